@@ -125,7 +125,7 @@ pub trait Mechanism {
     /// The velocity of quasi-velocities on numbers with derivatives.
     fn velocity_seeded(&self, t: f64, q: &[Seeded], xi: &[Seeded]) -> Option<Vec<Seeded>>;
 
-    /// Whether the steps of a method on it have derivatives for exponents ([`has_derivatives`](crate::has_derivatives)).
+    /// Whether the steps of a method on it have derivatives for exponents ([`has_tangents`](crate::has_tangents)).
     ///
     /// # Errors
     /// [`SensitivityError::Unsupported`] with the reason, where they have not.

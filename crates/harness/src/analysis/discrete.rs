@@ -1,41 +1,29 @@
 use super::Equilibrium;
+use super::flow::{filled, own_counts};
 use super::linear_map::{AllowedDirections, with_family};
-use super::manifold::positions;
+use super::manifold::{positions, with_rows};
 use super::root::nearest_root;
 use super::spectrum::{Spectrum, size};
-use crate::stepper::composed;
-use crate::{Method, MethodKind, Rk4, Rk4Reduced};
-use dla::{Differentiable, Dla, SeededMechanics, Sensitivity, SensitivityError, State, StepReport};
-use lagrangian::from_fn;
+use crate::run::integrate_pieces;
+use crate::{Method, MethodKind};
+use dla::{AnyState, Mechanism, Report, Schedule, SensitivityError, Size};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-/// A method as an object whose steps can be differentiated; none for the methods that this is not done for.
-///
-/// The family of `dla`, and `rk4` and `rk4-reduced` beside it: every further one would be compiled for every shape of system.
+/// Whether the steps of a method have a [`DiscreteMap`]: those of the family of `dla`, of `rk4` and of `rk4-reduced`.
 #[must_use]
-#[inline(never)]
-pub fn differentiable<const N: usize, const M: usize>(method: &Method) -> Option<Box<dyn Differentiable<N, M>>> {
-    Some(match method.info().kind {
-        MethodKind::Dla => Box::new(Dla::midpoint()),
-        MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
-        MethodKind::Composed(order) => Box::new(composed(order, Dla::midpoint())),
-        MethodKind::Rk4 => Box::new(Rk4),
-        MethodKind::Rk4Reduced => Box::new(Rk4Reduced),
-        _ => return None,
-    })
+pub fn has_map(method: &Method) -> bool {
+    use MethodKind::{Composed, Dla, DlaAlpha, DlaTrapezoid, Rk4, Rk4Reduced};
+    matches!(method.info().kind, Dla | DlaTrapezoid | DlaAlpha | Composed(_) | Rk4 | Rk4Reduced)
 }
 
-/// A step of a method on a system: by length and start, the end of it; none where it fails.
-pub type Step<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> Option<State<N>> + 'a;
-
-/// The map of one step about an equilibrium of the flow.
-pub struct DiscreteMap<'a, const N: usize, const M: usize> {
-    system: &'a dyn SeededMechanics<N, M>,
+/// The map of one step of a method about an equilibrium of the flow.
+#[derive(Debug)]
+pub struct DiscreteMap<'a> {
+    system: &'a dyn Mechanism,
     /// How many coordinates and quasi-velocities are its own.
     own: (usize, usize),
-    method: &'a dyn Differentiable<N, M>,
-    step: &'a mut Step<'a, N>,
+    method: &'a Method,
 }
 
 /// Why there is no map about an equilibrium.
@@ -105,20 +93,11 @@ const FACTOR: f64 = 1.25;
 const RUNGS: i32 = 72;
 const BISECTIONS: usize = 45;
 
-impl<const N: usize, const M: usize> std::fmt::Debug for DiscreteMap<'_, N, M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("DiscreteMap").finish_non_exhaustive()
-    }
-}
-
-impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
-    /// The map of a method whose steps `step` makes, from time zero, on a system of which so many coordinates and constraints are its own.
-    pub fn new(
-        (system, (n, m)): (&'a dyn SeededMechanics<N, M>, (usize, usize)),
-        method: &'a dyn Differentiable<N, M>,
-        step: &'a mut Step<'a, N>,
-    ) -> Self {
-        Self { system, own: (n, n - m), method, step }
+impl<'a> DiscreteMap<'a> {
+    /// The map of a method's steps from time zero, on a system of which so many coordinates and constraints, the first, are its own.
+    #[must_use]
+    pub fn new(system: &'a dyn Mechanism, own: (usize, usize), method: &'a Method) -> Self {
+        Self { system, own: own_counts(system, own), method }
     }
 
     /// The eigenvalues of the map with the step `h` (s) in shape and quasi-velocities, along the directions that the constraints on
@@ -126,34 +105,33 @@ impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
     ///
     /// # Errors
     /// [`MapError`] where it has none.
-    #[inline(never)]
-    pub fn spectrum(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> Result<Vec<[f64; 2]>, MapError> {
+    pub fn spectrum(&self, h: f64, equilibrium: &Equilibrium) -> Result<Vec<[f64; 2]>, MapError> {
         self.at_rest(h, equilibrium).map(|spectrum| spectrum.values)
     }
 
-    fn at_rest(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> Result<Spectrum, MapError> {
+    fn at_rest(&self, h: f64, equilibrium: &Equilibrium) -> Result<Spectrum, MapError> {
         let mut outcome = None;
         // What rests does so in every basis; a motion is steady in that of the start.
-        let system = self.system;
         if equilibrium.is_rest() {
             let q = &equilibrium.q;
-            system.near_seeded(0.0, q, 0, &mut |_, near| outcome = Some(self.on(near, h, equilibrium)));
+            self.system.near(0.0, q, 0, &mut |_, near| outcome = Some(self.on(near, h, equilibrium)));
         }
-        outcome.unwrap_or_else(|| self.on(system, h, equilibrium))
+        outcome.unwrap_or_else(|| self.on(self.system, h, equilibrium))
     }
 
-    fn on(&mut self, system: &dyn SeededMechanics<N, M>, h: f64, near: &Equilibrium<N>) -> Result<Spectrum, MapError> {
-        let (own, start) = (self.own, near.point(self.own));
-        let mut map = StepMap { system, own, method: self.method, step: &mut *self.step, h, near, failure: None };
+    fn on(&self, system: &dyn Mechanism, h: f64, near: &Equilibrium) -> Result<Spectrum, MapError> {
+        let mut failure = None;
+        let mut moved = |z: &DVector<f64>| self.moved(system, h, (near, z), &mut failure);
+        let start = near.point(self.own);
         let scale = 1.0 + start.norm();
-        let root = nearest_root(&mut |z| map.moved(z), start.clone(), ROOT * scale);
+        let root = nearest_root(&mut moved, start.clone(), ROOT * scale);
         let root = root.filter(|z| (z - start).norm() <= NEAR * scale);
-        root.and_then(|z| map.linearised(&z)).ok_or_else(|| map.failure.map_or(MapError::NoStep, MapError::Derivative))
+        let found = root.and_then(|z| moved(&z)).and_then(|(_, slope)| self.linearised(&slope, &near.shape));
+        found.ok_or_else(|| failure.map_or(MapError::NoStep, MapError::Derivative))
     }
 
     /// The longest step with which a stable equilibrium of the flow is one of the map, looked for about the step `h` (s).
-    #[inline(never)]
-    pub fn limit(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> StepLimit {
+    pub fn limit(&self, h: f64, equilibrium: &Equilibrium) -> StepLimit {
         let (mut good, mut tried) = (None, h * FIRST);
         for _ in 0..RUNGS {
             match (self.is_stable(tried, equilibrium), good) {
@@ -166,12 +144,12 @@ impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
         StepLimit::Beyond(good.unwrap_or(0.0))
     }
 
-    fn is_stable(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> Result<bool, MapError> {
+    fn is_stable(&self, h: f64, equilibrium: &Equilibrium) -> Result<bool, MapError> {
         self.at_rest(h, equilibrium).map(|spectrum| spectrum.is_stable_map())
     }
 
     /// Between a step with which the map is stable and one with which it was found not to be.
-    fn bisected(&mut self, mut good: f64, mut bad: f64, equilibrium: &Equilibrium<N>) -> StepLimit {
+    fn bisected(&self, mut good: f64, mut bad: f64, equilibrium: &Equilibrium) -> StepLimit {
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (good + bad);
             match self.is_stable(middle, equilibrium) {
@@ -182,64 +160,43 @@ impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
         }
         StepLimit::Unstable(good)
     }
-}
 
-/// The steps of one length about an equilibrium.
-struct StepMap<'m, 's, const N: usize, const M: usize> {
-    system: &'m dyn SeededMechanics<N, M>,
-    own: (usize, usize),
-    method: &'m dyn Differentiable<N, M>,
-    step: &'m mut Step<'s, N>,
-    h: f64,
-    near: &'m Equilibrium<N>,
-    /// Why a step had no derivative.
-    failure: Option<SensitivityError>,
-}
-
-impl<const N: usize, const M: usize> StepMap<'_, '_, N, M> {
     /// What a step changes in shape and quasi-velocities, and what its start misses of the constraints on positions, with the derivatives in
-    /// all coordinates and quasi-velocities.
-    fn moved(&mut self, z: &DVector<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> {
-        let (n, free) = self.own;
-        let mut q = self.near.q;
+    /// all coordinates and quasi-velocities; why the step had no derivative, where it had none.
+    fn moved(
+        &self,
+        system: &dyn Mechanism,
+        h: f64,
+        (near, z): (&Equilibrium, &DVector<f64>),
+        failure: &mut Option<SensitivityError>,
+    ) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let ((n, free), Size { n: all, m }) = (self.own, system.size());
+        let (mut q, mut xi) = (filled(all, &near.q), vec![0.0; all]);
         q[..n].copy_from_slice(&z.as_slice()[..n]);
-        let xi: [f64; N] = from_fn(|a| if a < free { z[n + a] } else { 0.0 });
-        let v = self.system.velocity_of(0.0, &q, &xi).ok()?;
-        let start = State::new(q, v, self.system.angles());
-        let end = (self.step)(self.h, &start)?;
-        let sensitivity = Sensitivity::<N, M, 0>::of(self.system);
-        let derivative = sensitivity.between(self.method, (0.0, self.h), &start, &end, StepReport::of(0));
-        let derivative = derivative.map_err(|failure| self.failure = Some(failure)).ok()?.reduced?;
-        let (moved, after) = (end.moved_since(&start), self.system.quasi_velocities(self.h, end.q(), end.v()).ok()?);
-        let (misses, gradients) = positions(self.system, n, 0.0, &q);
-        let shape = &self.near.shape;
-        let rows: Vec<usize> = shape.iter().copied().chain(N..N + free).collect();
-        let columns: Vec<usize> = (0..n).chain(N..N + free).collect();
-        let value = |row: usize| if row < N { moved[row] } else { after[row - N] - xi[row - N] };
-        let entry = |row: usize, column: usize| {
-            let column = if column < N { &derivative.from_q[column] } else { &derivative.from_xi[column - N] };
-            if row < N { column.q[row] } else { column.xi[row - N] }
-        };
-        let all = rows.len() + misses.len();
-        let values = rows.iter().map(|row| value(*row)).chain(misses.iter().copied());
-        let values = DVector::from_iterator(all, values);
-        let slope = DMatrix::from_fn(all, columns.len(), |i, j| match rows.get(i) {
-            Some(&row) => entry(row, columns[j]) - f64::from(u8::from(row == columns[j])),
-            None => {
-                if j < n {
-                    gradients[(i - rows.len(), j)]
-                } else {
-                    0.0
-                }
-            }
-        });
-        Some((values, slope))
+        xi[..free].copy_from_slice(&z.as_slice()[n..]);
+        let start = system.state(&q, &system.velocity_of(0.0, &q, &xi).ok()?);
+        let end = self.stepped(h, &start)?;
+        let derivative = system.step_derivative(self.method, (0.0, h), [&start, &end], &Report::of(m));
+        let derivative = derivative.map_err(|reason| *failure = Some(reason)).ok()?;
+        let after = system.quasi_velocities(h, end.q(), end.v()).ok()?;
+        let change = after.iter().zip(&xi).map(|(after, before)| after - before);
+        let change: Vec<f64> = end.moved_since(&start).into_iter().chain(change).collect();
+        let (misses, gradients) = positions(system, n, 0.0, &q);
+        let rows: Vec<usize> = near.shape.iter().copied().chain(all..all + free).collect();
+        let columns: Vec<usize> = (0..n).chain(all..all + free).collect();
+        let values = rows.iter().map(|row| change[*row]).chain(misses.iter().copied()).collect::<Vec<_>>().into();
+        let identity = DMatrix::identity(all + all - m, all + all - m);
+        let slope = (derivative - identity).select_rows(&rows).select_columns(&columns);
+        Some((values, with_rows(slope, &gradients)))
     }
 
-    fn linearised(&mut self, z: &DVector<f64>) -> Option<Spectrum> {
+    fn stepped(&self, h: f64, start: &AnyState) -> Option<AnyState> {
+        let (mut end, schedule) = (start.clone(), Schedule { t0: 0.0, step: h, steps: 1 });
+        (integrate_pieces(self.system, self.method, &schedule, &mut end, &mut ()) == Ok(1)).then_some(end)
+    }
+
+    fn linearised(&self, slope: &DMatrix<f64>, shape: &[usize]) -> Option<Spectrum> {
         let (n, free) = self.own;
-        let (_, slope) = self.moved(z)?;
-        let shape = &self.near.shape;
         let rows = shape.len() + free;
         let gradients = slope.view((rows, 0), (slope.nrows() - rows, n)).into_owned();
         let along = AllowedDirections::new(&gradients, shape, free)?;

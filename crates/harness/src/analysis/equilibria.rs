@@ -1,5 +1,6 @@
+use super::flow::{filled, own_counts};
 use super::search::Searching;
-use dla::SeededMechanics;
+use dla::Mechanism;
 use lagrangian::ReducedError;
 use lagrangian::linear::Singular;
 use nalgebra::DVector;
@@ -8,13 +9,13 @@ use thiserror::Error;
 /// A motion that looks the same at all times but for where it is: steady quasi-velocities, and no change of the coordinates
 /// that the equations depend on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Equilibrium<const N: usize> {
+pub struct Equilibrium {
     /// Configuration at time zero.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// Velocity.
-    pub v: [f64; N],
+    pub v: Vec<f64>,
     /// Quasi-velocities; only those of the system's own count. At rest they are all zero.
-    pub xi: [f64; N],
+    pub xi: Vec<f64>,
     /// The coordinates that the equations depend on, the shape; the others are cyclic.
     pub shape: Vec<usize>,
     /// How many directions the linear equations leave at rest: the parameters of the family that it belongs to; 0 where it
@@ -27,7 +28,7 @@ pub struct Equilibrium<const N: usize> {
     pub stable: bool,
 }
 
-impl<const N: usize> Equilibrium<N> {
+impl Equilibrium {
     /// Whether nothing moves but what the constraints move.
     pub(super) fn is_rest(&self) -> bool {
         self.xi.iter().all(|xi| *xi == 0.0)
@@ -35,15 +36,15 @@ impl<const N: usize> Equilibrium<N> {
 
     /// Configuration and quasi-velocities, of so many coordinates and quasi-velocities.
     pub(super) fn point(&self, (n, free): (usize, usize)) -> DVector<f64> {
-        DVector::from_iterator(n + free, self.q[..n].iter().chain(&self.xi[..free]).copied())
+        [filled(n, &self.q), filled(free, &self.xi)].concat().into()
     }
 }
 
 /// What was found, and where it was looked for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RelativeEquilibria<const N: usize> {
+pub struct RelativeEquilibria {
     /// The fastest first, rest last.
-    pub found: Vec<Equilibrium<N>>,
+    pub found: Vec<Equilibrium>,
     /// From so many places, the start among them, rest was looked for, and up to so far from the start in a coordinate (m, rad).
     pub places: usize,
     /// See [`places`](Self::places).
@@ -87,7 +88,7 @@ pub enum EquilibriumError {
 }
 
 /// Relative equilibria of a system: rest near its start and at places around it, and steady motions near its start and near motions of
-/// its energy.
+/// its energy. Of the system so many coordinates and constraints, the first, are its own: others fill up its shape, and rest.
 ///
 /// The coordinates that the reduced equations `xi' = f(q, xi)` do not depend on are cyclic, and free to change. Searched are the roots of
 /// `f`, of the rates of the other coordinates, and of the functions of the constraints on positions. Rest is searched from the start and
@@ -98,27 +99,16 @@ pub enum EquilibriumError {
 ///
 /// # Errors
 /// [`EquilibriumError`].
-pub fn relative_equilibria<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> Result<RelativeEquilibria<N>, EquilibriumError> {
-    relative_equilibria_within(system, (N, M), q, v)
-}
-
-/// The same of a system of which so many coordinates and constraints, the first, are its own: the others fill up the shape, and rest.
-///
-/// # Errors
-/// As [`relative_equilibria`].
-#[inline(never)]
-pub fn relative_equilibria_within<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
-    (n, m): (usize, usize),
-    q: &[f64; N],
-    v: &[f64; N],
-) -> Result<RelativeEquilibria<N>, EquilibriumError> {
-    if n == m {
+pub fn relative_equilibria(
+    system: &dyn Mechanism,
+    own: (usize, usize),
+    q: &[f64],
+    v: &[f64],
+) -> Result<RelativeEquilibria, EquilibriumError> {
+    let own = own_counts(system, own);
+    if own.1 == 0 {
         return Err(EquilibriumError::NothingFree);
     }
-    Searching::new(system, (n, n - m), (q, v))?.all()
+    let all = system.size().n;
+    Searching::new(system, own, (filled(all, q), filled(all, v)))?.all()
 }

@@ -1,17 +1,17 @@
 use super::neutral::bias;
 use super::pace::Pace;
 use super::stretch::{LyapunovFailure, Running, Stretch};
-use super::tangent::{StepTangent, Steps};
+use super::tangent::Steps;
 use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
 use crate::{Method, Progress};
-use dla::{FullMechanics, Observer, OwnMethods, RunError, Schedule, SeededMechanics, SensitivityError, State, Subject};
+use dla::{Mechanism, Schedule, SensitivityError};
 use thiserror::Error;
 
 /// What exponents are asked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LyapunovRequest<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct LyapunovRequest {
     /// When the counted steps are.
     pub schedule: Schedule,
     /// So many steps are made before them, until the motion and the tangent vectors have settled.
@@ -19,9 +19,9 @@ pub struct LyapunovRequest<const N: usize> {
     /// How many exponents, the largest first; all where none is said.
     pub exponents: Option<usize>,
     /// Configuration at the start.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// Velocity at the start.
-    pub v: [f64; N],
+    pub v: Vec<f64>,
 }
 
 /// The Lyapunov exponents of a motion, as the discrete map has them.
@@ -79,96 +79,45 @@ pub enum LyapunovError {
     Sensitivity(#[from] SensitivityError),
 }
 
-/// The Lyapunov exponents of a motion of a system, which may bring integrators of its own, by the derivatives of the steps that a method
-/// makes along it.
+/// The Lyapunov exponents of a motion of a system, by the derivatives of the steps that a method makes along it.
 ///
-/// `2 N - M` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions: neighbours that do
+/// Of the system so many coordinates `n` and constraints `m`, the first, are its own: others fill up its shape, and have no exponents.
+/// `2 n - m` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions: neighbours that do
 /// not keep these are none. The exponents do not depend on the coordinates where
 /// the motion stays in a bounded region of them or is invariant under the translations that leave it. A run that fails gives what it has,
 /// with [`Lyapunov::failure`] set.
 ///
 /// # Errors
 /// [`LyapunovError`] where the request makes no sense, or the method has no derivatives here.
-pub fn lyapunov<const N: usize, const M: usize>(
-    subject: (&dyn FullMechanics<N, M>, &dyn OwnMethods<N, M>),
-    method: &Method,
-    request: &LyapunovRequest<N>,
-    progress: &mut dyn Progress,
-) -> Result<Lyapunov, LyapunovError> {
-    lyapunov_within(subject, (N, M), method, request, progress)
-}
-
-/// The same of a system of which so many coordinates and constraints, the first, are its own: the others fill up the shape, and have no
-/// exponents.
-///
-/// # Errors
-/// As [`lyapunov`].
-#[inline(never)]
-pub fn lyapunov_within<const N: usize, const M: usize>(
-    (system, own): (&dyn FullMechanics<N, M>, &dyn OwnMethods<N, M>),
-    its: (usize, usize),
-    method: &Method,
-    request: &LyapunovRequest<N>,
-    progress: &mut dyn Progress,
-) -> Result<Lyapunov, LyapunovError> {
-    let (first, last) =
-        (request.schedule.t0, request.schedule.time(request.settle.saturating_add(request.schedule.steps)));
-    if let Some(time) = system.jump_times(first, last).into_iter().min_by(f64::total_cmp) {
-        return Err(LyapunovError::Jump { time });
-    }
-    lyapunov_of(system, its, method, request, |schedule, state, observer| {
-        integrate_pieces(Subject { system, own }, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
-    })
-}
-
-/// The same of a run that `drive` makes, by the steps of that method: for a caller who has the method's type, and need not
-/// compile all others.
-///
-/// # Errors
-/// As [`lyapunov`]; jumps are not looked for.
-pub fn lyapunov_by<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
-    method: &Method,
-    request: &LyapunovRequest<N>,
-    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
-) -> Result<Lyapunov, LyapunovError> {
-    lyapunov_of(system, (N, M), method, request, drive)
-}
-
-/// The same of a system of which so many coordinates and constraints, the first, are its own: the others fill up the shape.
-///
-/// # Errors
-/// As [`lyapunov_by`].
-fn lyapunov_of<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
+pub fn lyapunov(
+    system: &dyn Mechanism,
     own: (usize, usize),
     method: &Method,
-    request: &LyapunovRequest<N>,
-    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
+    request: &LyapunovRequest,
+    progress: &mut dyn Progress,
 ) -> Result<Lyapunov, LyapunovError> {
-    let LyapunovRequest { schedule, settle, q, v, .. } = *request;
-    let tangent = Steps::of(system, own, method, (schedule.t0, &q))?;
+    let LyapunovRequest { schedule, settle, exponents, q, v } = request;
+    let all = Schedule { steps: settle.saturating_add(schedule.steps), ..*schedule };
+    if let Some(time) = system.jump_times(all.t0, all.time(all.steps)).into_iter().min_by(f64::total_cmp) {
+        return Err(LyapunovError::Jump { time });
+    }
+    let tangent = Steps::of(system, own, method, (all.t0, q))?;
     let most = tangent.count();
-    let count = request.exponents.unwrap_or(most);
+    let count = exponents.unwrap_or(most);
     if count == 0 || count > most {
         return Err(LyapunovError::Count { asked: count, most });
     }
-    let mut stretch = Stretch::new(&tangent, method.info().order, count, (settle, schedule.steps));
-    let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
-    let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);
+    let mut stretch = Stretch::new(&tangent, method.info().order, count, (*settle, schedule.steps));
+    let mut observer = (&mut stretch, Ticker::new(progress, 0));
+    let outcome = integrate_pieces(system, method, &all, &mut system.state(q, v), &mut observer);
     let failure = stretch.failure.or(outcome.err().map(Into::into));
     // Also where all steps are counted, the tangent vectors have had one step to align.
-    let before = settle.max(1) as f64 * schedule.step.abs();
+    let before = (*settle).max(1) as f64 * schedule.step.abs();
     Ok(result(&stretch, most, before, failure))
 }
 
 /// What the sums come to; the exponents in order.
-fn result<const N: usize, const M: usize>(
-    stretch: &Stretch<'_, N, M>,
-    most: usize,
-    before: f64,
-    failure: Option<LyapunovFailure>,
-) -> Lyapunov {
+fn result(stretch: &Stretch<'_>, most: usize, before: f64, failure: Option<LyapunovFailure>) -> Lyapunov {
     let (sums, time) = (&stretch.sums, stretch.sums.time);
     let mut order: Vec<usize> = (0..sums.logs.len()).collect();
     order.sort_by(|a, b| sums.logs[*b].total_cmp(&sums.logs[*a]));

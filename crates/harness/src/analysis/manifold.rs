@@ -1,4 +1,4 @@
-use dla::Mechanics;
+use dla::Mechanism;
 use nalgebra::{DMatrix, DVector, SVD};
 
 /// A singular value of rows of the length one that is below this is none: rows that depend on one another.
@@ -33,16 +33,20 @@ impl Split {
 
 /// The functions of the constraints on positions, and the rows of their gradients, in the first `n` coordinates; no rows without such
 /// constraints. The rows have the length one: in whichever unit a function is, it says the same.
-pub(super) fn positions<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    n: usize,
-    t: f64,
-    q: &[f64; N],
-) -> (DVector<f64>, DMatrix<f64>) {
-    let misses: Vec<_> = system.position_misses(t, q).into_iter().flatten().flatten().collect();
-    let length = |eps: &[f64; N]| eps[..n].iter().fold(0.0, |sum: f64, x| sum.hypot(*x));
-    let lengths: Vec<f64> = misses.iter().map(|g| Some(length(&g.eps)).filter(|l| *l > 0.0).unwrap_or(1.0)).collect();
-    let values = DVector::from_fn(misses.len(), |k, _| misses[k].re / lengths[k]);
-    let rows = DMatrix::from_fn(misses.len(), n, |k, i| misses[k].eps[i] / lengths[k]);
+pub(super) fn positions(system: &dyn Mechanism, n: usize, t: f64, q: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
+    let misses = system.position_misses(t, q);
+    let length = |eps: &[f64]| eps.iter().take(n).fold(0.0, |sum: f64, x| sum.hypot(*x));
+    let lengths: Vec<f64> =
+        misses.iter().map(|(_, eps)| Some(length(eps)).filter(|l| *l > 0.0).unwrap_or(1.0)).collect();
+    let values = DVector::from_fn(misses.len(), |k, _| misses[k].0 / lengths[k]);
+    let rows = DMatrix::from_fn(misses.len(), n, |k, i| misses[k].1[i] / lengths[k]);
     (values, rows)
+}
+
+/// A matrix with further rows below it, which have fewer columns.
+pub(super) fn with_rows(matrix: DMatrix<f64>, rows: &DMatrix<f64>) -> DMatrix<f64> {
+    let above = matrix.nrows();
+    let mut whole = matrix.resize_vertically(above + rows.nrows(), 0.0);
+    whole.view_mut((above, 0), rows.shape()).copy_from(rows);
+    whole
 }

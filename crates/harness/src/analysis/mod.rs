@@ -9,7 +9,6 @@ mod discrete;
 mod equilibria;
 mod flow;
 mod linear_map;
-mod linearised;
 mod lyapunov;
 mod manifold;
 mod measure;
@@ -30,12 +29,9 @@ mod tangent;
 mod verdict;
 mod volume;
 
-pub use discrete::{DiscreteMap, MapError, Step, StepLimit, differentiable};
-pub use equilibria::{
-    Equilibrium, EquilibriumError, RelativeEquilibria, relative_equilibria, relative_equilibria_within,
-};
-pub use linearised::{ReducedField, reduced_field};
-pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov, lyapunov_by, lyapunov_within};
+pub use discrete::{DiscreteMap, MapError, StepLimit, has_map};
+pub use equilibria::{Equilibrium, EquilibriumError, RelativeEquilibria, relative_equilibria};
+pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov};
 pub use measure::{enclosed_area, measure_defect};
 pub use momentum_meter::MomentumMeter;
 pub(crate) use parallel::STACK;
@@ -43,5 +39,4 @@ pub use parallel::{in_parallel, prepare_threads};
 pub use phase::{Rounds, weighted_mean};
 pub use section::{Section, section};
 pub use stretch::{LyapunovFailure, Running};
-pub use tangent::has_tangents;
 pub use verdict::{Evidence, MotionVerdict, PARTS, Undecided};

@@ -1,12 +1,10 @@
-use dla::{Observer, StepReport, View};
-use lagrangian::{MomentumBalance, System, VectorField, momentum_balance};
+use dla::{AnyState, Observer, Report, View};
 use std::ops::ControlFlow;
 
 /// Watches the momentum along a field on a run, and the momentum equation.
 #[derive(Debug, Clone)]
-pub struct MomentumMeter<'a, Sys, X> {
-    system: &'a Sys,
-    field: X,
+pub struct MomentumMeter<Balance> {
+    balance: Balance,
     first: f64,
     last: Option<(f64, f64)>,
     gained: f64,
@@ -14,11 +12,12 @@ pub struct MomentumMeter<'a, Sys, X> {
     defect: f64,
 }
 
-impl<'a, Sys, X> MomentumMeter<'a, Sys, X> {
-    /// For the momentum of this system along this field.
+impl<Balance: Fn(f64, &AnyState) -> Option<[f64; 2]>> MomentumMeter<Balance> {
+    /// For a momentum, which `balance` gives with its rate at a time (s) and a state: those of a
+    /// [`momentum_balance`](lagrangian::momentum_balance()), and none where the equations of motion are degenerate.
     #[must_use]
-    pub fn new(system: &'a Sys, field: X) -> Self {
-        Self { system, field, first: 0.0, last: None, gained: 0.0, drift: 0.0, defect: 0.0 }
+    pub fn new(balance: Balance) -> Self {
+        Self { balance, first: 0.0, last: None, gained: 0.0, drift: 0.0, defect: 0.0 }
     }
 
     /// The largest `|p.X - (p.X)(0)|` at the nodes: rounding where the momentum is conserved.
@@ -34,33 +33,24 @@ impl<'a, Sys, X> MomentumMeter<'a, Sys, X> {
         self.defect
     }
 
-    fn balance<const N: usize, const M: usize>(&self, node: &View<'_, N, M>) -> (f64, f64)
-    where
-        Sys: System<N, M>,
-        X: VectorField<N>,
-    {
-        let balance = momentum_balance(self.system, node.t, node.state.q(), node.state.v(), &self.field);
-        balance.map_or((f64::NAN, f64::NAN), |balance: MomentumBalance<M>| (balance.momentum, balance.rate()))
+    fn at(&self, node: &View<'_>) -> [f64; 2] {
+        (self.balance)(node.t, node.state).unwrap_or([f64::NAN; 2])
     }
 }
 
-impl<Sys, X, const N: usize, const M: usize> Observer<N, M> for MomentumMeter<'_, Sys, X>
-where
-    Sys: System<N, M>,
-    X: VectorField<N>,
-{
-    fn start(&mut self, node: &View<'_, N, M>) {
-        let (momentum, rate) = self.balance(node);
+impl<Balance: Fn(f64, &AnyState) -> Option<[f64; 2]>> Observer for MomentumMeter<Balance> {
+    fn start(&mut self, node: &View<'_>) {
+        let [momentum, rate] = self.at(node);
         self.first = momentum;
         self.last = Some((node.t, rate));
     }
 
-    fn resume(&mut self, node: &View<'_, N, M>) {
-        self.last = Some((node.t, self.balance(node).1));
+    fn resume(&mut self, node: &View<'_>) {
+        self.last = Some((node.t, self.at(node)[1]));
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
-        let (momentum, rate) = self.balance(node);
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
+        let [momentum, rate] = self.at(node);
         if let Some((t, before)) = self.last {
             self.gained += 0.5 * (node.t - t) * (before + rate);
         }

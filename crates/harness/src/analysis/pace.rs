@@ -1,27 +1,26 @@
-use super::returns::{Point, Returns, size};
+use super::returns::{Point, Returns, apart, size};
 use super::verdict::PARTS;
 use crate::Blocks;
-use lagrangian::from_fn;
 
 /// What the quasi-velocities do along a run: whether they change, grow, repeat.
 #[derive(Debug)]
-pub(super) struct Pace<const N: usize> {
+pub(super) struct Pace {
     /// What makes each of them the root of twice its energy.
-    weights: [f64; N],
+    weights: Vec<f64>,
     /// From this step on the run is counted, and from this on repetitions are looked for.
     counted: u64,
     half: u64,
     sizes: Blocks,
     largest: f64,
-    origin: Option<[f64; N]>,
+    origin: Option<Vec<f64>>,
     change: f64,
     quickest: f64,
-    last: Option<Point<N>>,
-    returns: Option<Returns<N>>,
+    last: Option<Point>,
+    returns: Option<Returns>,
 }
 
-impl<const N: usize> Pace<N> {
-    pub(super) fn new(weights: [f64; N], settle: u64, steps: u64) -> Self {
+impl Pace {
+    pub(super) fn new(weights: Vec<f64>, settle: u64, steps: u64) -> Self {
         Self {
             weights,
             counted: settle,
@@ -37,14 +36,14 @@ impl<const N: usize> Pace<N> {
     }
 
     /// Adds node `k`, with its quasi-velocities and their rates.
-    pub(super) fn add(&mut self, k: u64, t: f64, xi: &[f64; N], rate: &[f64; N]) {
-        let scaled = |x: &[f64; N]| from_fn(|a| self.weights[a] * x[a]);
+    pub(super) fn add(&mut self, k: u64, t: f64, xi: &[f64], rate: &[f64]) {
+        let scaled = |x: &[f64]| -> Vec<f64> { self.weights.iter().zip(x).map(|(weight, x)| weight * x).collect() };
         let point = (t, scaled(xi), scaled(rate));
         self.sizes.add(t, size(&point.1));
         self.largest = self.largest.max(size(&point.1));
         if k >= self.counted {
-            let origin = *self.origin.get_or_insert(point.1);
-            self.change = self.change.max(size::<N>(&from_fn(|a| point.1[a] - origin[a])));
+            let origin = self.origin.get_or_insert_with(|| point.1.clone());
+            self.change = self.change.max(apart(&point.1, origin));
             self.quickest = self.quickest.max(size(&point.2));
         }
         if k >= self.half {
@@ -52,7 +51,7 @@ impl<const N: usize> Pace<N> {
                 (Some(returns), Some(last)) => returns.add(last, &point),
                 // Where it changes quickly, a plane across is well crossed.
                 _ if self.quickest > 0.0 && size(&point.2) >= 0.5 * self.quickest => {
-                    self.returns = Some(Returns::to(point));
+                    self.returns = Some(Returns::to(point.clone()));
                 }
                 _ => {}
             }

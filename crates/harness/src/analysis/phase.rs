@@ -1,16 +1,16 @@
-use dla::{Observer, State, StepReport, View};
+use dla::{AnyState, Observer, Report, View};
 use std::ops::ControlFlow;
 
 /// How far a coordinate has moved after every round of so many steps.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rounds<const N: usize> {
+pub struct Rounds {
     coordinate: usize,
     every: u64,
-    start: Option<State<N>>,
+    start: Option<AnyState>,
     moved: Vec<f64>,
 }
 
-impl<const N: usize> Rounds<N> {
+impl Rounds {
     /// Watches the coordinate of that number over rounds of `every` steps.
     #[must_use]
     pub fn new(coordinate: usize, every: u64) -> Self {
@@ -31,12 +31,12 @@ impl<const N: usize> Rounds<N> {
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Rounds<N> {
-    fn start(&mut self, node: &View<'_, N, M>) {
-        self.start = Some(*node.state);
+impl Observer for Rounds {
+    fn start(&mut self, node: &View<'_>) {
+        self.start = Some(node.state.clone());
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         if let Some(start) = &self.start
             && node.k.is_multiple_of(self.every)
         {

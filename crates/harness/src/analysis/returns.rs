@@ -1,5 +1,3 @@
-use lagrangian::from_fn;
-
 /// What velocities may differ by where they repeat, relative to their range, and times relative to the period: what cubics between nodes leave,
 /// `(h Omega)^4/384` of motions of the frequency `Omega`, is below it for `h Omega < 0.7`.
 const REPEATS: f64 = 1e-3;
@@ -10,29 +8,31 @@ const PERIODS: usize = 4;
 const KEPT: usize = 4096;
 
 /// Values with their rates at a time (s).
-pub(super) type Point<const N: usize> = (f64, [f64; N], [f64; N]);
+pub(super) type Point = (f64, Vec<f64>, Vec<f64>);
 
 /// When a signal comes back to where it was: it crosses the plane through one of its points, normal to its rate there.
 #[derive(Debug)]
-pub(super) struct Returns<const N: usize> {
-    origin: [f64; N],
-    normal: [f64; N],
+pub(super) struct Returns {
+    origin: Vec<f64>,
+    normal: Vec<f64>,
     /// Times (s) and values of the crossings in the direction of the first, which is the origin.
-    crossings: Vec<(f64, [f64; N])>,
+    crossings: Vec<(f64, Vec<f64>)>,
     /// How far the signal went from there.
     range: f64,
 }
 
-impl<const N: usize> Returns<N> {
-    pub(super) fn to((t, origin, rate): Point<N>) -> Self {
+impl Returns {
+    pub(super) fn to((t, origin, rate): Point) -> Self {
         let length = size(&rate);
-        Self { origin, normal: rate.map(|x| x / length), crossings: vec![(t, origin)], range: 0.0 }
+        let normal = rate.iter().map(|x| x / length).collect();
+        Self { crossings: vec![(t, origin.clone())], origin, normal, range: 0.0 }
     }
 
     /// Looks at the signal between two neighbouring nodes.
-    pub(super) fn add(&mut self, before: &Point<N>, after: &Point<N>) {
-        self.range = self.range.max(size::<N>(&from_fn(|i| after.1[i] - self.origin[i])));
-        let height = |at: &[f64; N]| (0..N).map(|i| self.normal[i] * (at[i] - self.origin[i])).sum::<f64>();
+    pub(super) fn add(&mut self, before: &Point, after: &Point) {
+        self.range = self.range.max(apart(&after.1, &self.origin));
+        let plane = || self.normal.iter().zip(&self.origin);
+        let height = |at: &[f64]| plane().zip(at).map(|((normal, origin), at)| normal * (at - origin)).sum::<f64>();
         if !(height(&before.1) < 0.0 && height(&after.1) >= 0.0) || self.crossings.len() == KEPT {
             return;
         }
@@ -51,10 +51,10 @@ impl<const N: usize> Returns<N> {
         let repeats = |every: usize| {
             let rounds = (count - 1) / every;
             let period = (self.crossings[rounds * every].0 - self.crossings[0].0) / rounds as f64;
-            let alike = |(j, (time, at)): (usize, &(f64, [f64; N]))| {
+            let alike = |(j, (time, at)): (usize, &(f64, Vec<f64>))| {
                 let (first, there) = &self.crossings[j % every];
                 let late = time - first - (j / every) as f64 * period;
-                size::<N>(&from_fn(|i| at[i] - there[i])) <= REPEATS * self.range && late.abs() <= REPEATS * period
+                apart(at, there) <= REPEATS * self.range && late.abs() <= REPEATS * period
             };
             self.crossings.iter().enumerate().all(alike).then_some(period)
         };
@@ -63,14 +63,21 @@ impl<const N: usize> Returns<N> {
 }
 
 /// The cubic with the values and rates of two nodes, at a fraction of the way.
-fn between<const N: usize>(before: &Point<N>, after: &Point<N>, c: f64) -> [f64; N] {
+fn between(before: &Point, after: &Point, c: f64) -> Vec<f64> {
     let h = after.0 - before.0;
-    from_fn(|i| {
-        let (change, d0, d1) = (after.1[i] - before.1[i], h * before.2[i], h * after.2[i]);
-        before.1[i] + c * (d0 + c * ((3.0 * change - 2.0 * d0 - d1) + c * (d0 + d1 - 2.0 * change)))
-    })
+    let values = before.1.iter().zip(&after.1);
+    let rates = before.2.iter().zip(&after.2);
+    let cubic = |((value, next), (rate, next_rate)): ((&f64, &f64), (&f64, &f64))| {
+        let (change, d0, d1) = (next - value, h * rate, h * next_rate);
+        value + c * (d0 + c * ((3.0 * change - 2.0 * d0 - d1) + c * (d0 + d1 - 2.0 * change)))
+    };
+    values.zip(rates).map(cubic).collect()
 }
 
-pub(super) fn size<const N: usize>(x: &[f64; N]) -> f64 {
+pub(super) fn size(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |size: f64, x| size.hypot(*x))
+}
+
+pub(super) fn apart(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |size: f64, (a, b)| size.hypot(a - b))
 }

@@ -1,11 +1,10 @@
 use super::equilibria::{Equilibrium, EquilibriumError, RelativeEquilibria};
+use super::flow::single;
 use super::linear_map::{AllowedDirections, with_family};
-use super::manifold::positions;
-use super::reduced_field;
+use super::manifold::{positions, with_rows};
 use super::root::nearest_root;
 use super::shape::shape;
-use dla::SeededMechanics;
-use lagrangian::from_fn;
+use dla::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -21,49 +20,52 @@ const PLACES: usize = 20;
 const REACHES: [f64; 3] = [0.3, 1.0, 3.0];
 
 /// The search for the relative equilibria of a system.
-pub(super) struct Searching<'a, const N: usize, const M: usize> {
-    system: &'a dyn SeededMechanics<N, M>,
+pub(super) struct Searching<'a> {
+    system: &'a dyn Mechanism,
     /// How many coordinates and quasi-velocities are its own.
     own: (usize, usize),
-    q: [f64; N],
+    q: Vec<f64>,
     /// The first guesses of the quasi-velocities of steady motions.
-    guesses: Vec<[f64; N]>,
+    guesses: Vec<Vec<f64>>,
     shape: Vec<usize>,
 }
 
-impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
+impl<'a> Searching<'a> {
     /// Of a system with so many coordinates and quasi-velocities of its own, from its start.
     pub(super) fn new(
-        system: &'a dyn SeededMechanics<N, M>,
+        system: &'a dyn Mechanism,
         own: (usize, usize),
-        (q, v): (&[f64; N], &[f64; N]),
+        (q, v): (Vec<f64>, Vec<f64>),
     ) -> Result<Self, EquilibriumError> {
-        let xi = system.quasi_velocities(0.0, q, v)?;
-        let rest = system.velocity_of(0.0, q, &[0.0; N])?;
-        let kinetic = |v: &[f64; N]| system.energy(0.0, q, v) - system.energy(0.0, q, &rest);
-        let available = kinetic(v);
+        let xi = system.quasi_velocities(0.0, &q, &v)?;
+        let still = vec![0.0; q.len()];
+        let rest = system.velocity_of(0.0, &q, &still)?;
+        let kinetic = |v: &[f64]| system.energy(0.0, &q, v) - system.energy(0.0, &q, &rest);
+        let available = kinetic(&v);
         let mut guesses = Vec::new();
         for axis in 0..own.1 {
-            let unit = from_fn(|k| f64::from(u8::from(k == axis)));
-            let speed = (available / kinetic(&system.velocity_of(0.0, q, &unit)?)).max(0.0).sqrt();
+            let unit = single(q.len(), axis, 1.0);
+            let speed = (available / kinetic(&system.velocity_of(0.0, &q, &unit)?)).max(0.0).sqrt();
             if speed.is_finite() && speed > 0.0 {
-                guesses.extend([speed, -speed].map(|speed| unit.map(|unit| unit * speed)));
+                guesses.extend([speed, -speed].map(|speed| unit.iter().map(|unit| unit * speed).collect()));
             }
         }
         guesses.push(xi);
-        let near = |x: &[f64; N], offset: f64, turn: f64| from_fn(|i| x[i] + offset * (turn + i as f64).cos());
+        let near = |x: &[f64], offset: f64, turn: f64| -> Vec<f64> {
+            x.iter().enumerate().map(|(i, x)| x + offset * (turn + i as f64).cos()).collect()
+        };
         let at = |(k, offset): (usize, &f64)| {
-            let xi = if k == 0 { [0.0; N] } else { guesses[(k - 1) % guesses.len()] };
-            (offset.abs(), near(q, *offset, 0.5), near(&xi, *offset, 1.7))
+            let xi = if k == 0 { &still } else { &guesses[(k - 1) % guesses.len()] };
+            (offset.abs(), near(&q, *offset, 0.5), near(xi, *offset, 1.7))
         };
         let shape = shape(system, own, OFFSETS.iter().enumerate().map(at))?;
-        Ok(Self { system, own, q: *q, guesses, shape })
+        Ok(Self { system, own, q, guesses, shape })
     }
 
     /// What is found from all places and guesses.
-    pub(super) fn all(&self) -> Result<RelativeEquilibria<N>, EquilibriumError> {
-        let mut found: Vec<Equilibrium<N>> = Vec::new();
-        let mut note = |one: Option<Equilibrium<N>>| {
+    pub(super) fn all(&self) -> Result<RelativeEquilibria, EquilibriumError> {
+        let mut found: Vec<Equilibrium> = Vec::new();
+        let mut note = |one: Option<Equilibrium>| {
             let Some(one) = one else { return false };
             if !found.iter().any(|other| self.alike(other, &one)) {
                 found.push(one);
@@ -73,7 +75,7 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
         // Rest first: it is exact, where what comes to rest from elsewhere is not.
         let (places, reach) = self.places();
         for place in &places {
-            note(self.from(place, &[0.0; N]));
+            note(self.from(place, &vec![0.0; place.len()]));
         }
         let offsets = &places[..places.len().min(OFFSETS.len())];
         for guess in &self.guesses {
@@ -81,7 +83,7 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
             let _ = offsets.iter().any(|place| note(self.from(place, guess)));
         }
         // The fastest first, rest last.
-        let speed = |e: &Equilibrium<N>| e.xi.iter().map(|x| x * x).sum::<f64>();
+        let speed = |e: &Equilibrium| e.xi.iter().map(|x| x * x).sum::<f64>();
         found.sort_by(|a, b| speed(b).total_cmp(&speed(a)));
         let (places, motions) = (places.len(), self.guesses.len());
         match found.is_empty() {
@@ -91,16 +93,16 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
     }
 
     /// The places from which rest is searched, the start first, those beside it next; and how far they are from the start in a coordinate.
-    fn places(&self) -> (Vec<[f64; N]>, f64) {
+    fn places(&self) -> (Vec<Vec<f64>>, f64) {
         let moved = |offset: &dyn Fn(usize) -> f64| {
-            let mut place = self.q;
+            let mut place = self.q.clone();
             self.shape.iter().for_each(|&i| place[i] += offset(i));
             place
         };
         if self.shape.is_empty() {
-            return (vec![self.q], 0.0);
+            return (vec![self.q.clone()], 0.0);
         }
-        let mut places: Vec<[f64; N]> =
+        let mut places: Vec<Vec<f64>> =
             OFFSETS.iter().map(|offset| moved(&|i| offset * (0.5 + i as f64).cos())).collect();
         let angles = self.system.angles();
         // Multiples of powers of a number that no ratio of small integers is near to: they fill a box evenly.
@@ -116,20 +118,21 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
             };
             places.push(moved(&|i| reach(i) * part(i)));
         }
-        let far = |place: &[f64; N]| (0..N).map(|i| (place[i] - self.q[i]).abs()).fold(0.0, f64::max);
+        let far = |place: &Vec<f64>| place.iter().zip(&self.q).map(|(x, start)| (x - start).abs()).fold(0.0, f64::max);
         let reach = places.iter().map(far).fold(0.0, f64::max);
         (places, reach)
     }
 
     /// The relative equilibrium near a place and quasi-velocities; rest where these are zero.
-    fn from(&self, place: &[f64; N], xi: &[f64; N]) -> Option<Equilibrium<N>> {
+    fn from(&self, place: &[f64], xi: &[f64]) -> Option<Equilibrium> {
         let (n, free) = self.own;
         let moving = if xi.iter().all(|xi| *xi == 0.0) { 0 } else { free };
         let start = DVector::from_iterator(n + moving, place[..n].iter().chain(&xi[..moving]).copied());
         let split = |z: &DVector<f64>| {
-            let mut q = self.q;
+            let (mut q, mut xi) = (self.q.clone(), vec![0.0; self.q.len()]);
             q[..n].copy_from_slice(&z.as_slice()[..n]);
-            (q, from_fn(|a| if a < moving { z[n + a] } else { 0.0 }))
+            xi[..moving].copy_from_slice(&z.as_slice()[n..]);
+            (q, xi)
         };
         let tolerance = ROOT * (1.0 + start.norm());
         let mut rates = |z: &DVector<f64>| {
@@ -140,19 +143,19 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
         // What is far below rounding of the largest is what a correction has left of it.
         let nothing = f64::EPSILON * f64::EPSILON * (1.0 + z.norm());
         let (q, xi) = split(&z.map(|x| if x.abs() < nothing { 0.0 } else { x }));
-        let size = |x: &[f64; N]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let size = |x: &[f64]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         if moving > 0 && size(&xi) <= REST * (1.0 + size(&q)) {
-            return self.from(&q, &[0.0; N]);
+            return self.from(&q, &vec![0.0; q.len()]);
         }
         self.at(moving == 0, &q, |system| self.linearised(system, &q, &xi))?
     }
 
     /// Something of the system, in the basis that is good there where rest is looked for: what rests does so in every basis, and a motion
     /// that is steady is so in that of the start.
-    fn at<T>(&self, rest: bool, q: &[f64; N], mut then: impl FnMut(&dyn SeededMechanics<N, M>) -> T) -> Option<T> {
+    fn at<T>(&self, rest: bool, q: &[f64], mut then: impl FnMut(&dyn Mechanism) -> T) -> Option<T> {
         let mut outcome = None;
         if rest {
-            self.system.near_seeded(0.0, q, 0, &mut |_, system| outcome = Some(then(system)));
+            self.system.near(0.0, q, 0, &mut |_, system| outcome = Some(then(system)));
         }
         Some(outcome.unwrap_or_else(|| then(self.system)))
     }
@@ -161,42 +164,49 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
     /// so many of the quasi-velocities.
     fn rates(
         &self,
-        system: &dyn SeededMechanics<N, M>,
-        q: &[f64; N],
-        xi: &[f64; N],
+        system: &dyn Mechanism,
+        q: &[f64],
+        xi: &[f64],
         moving: usize,
     ) -> Option<(DVector<f64>, DMatrix<f64>)> {
-        let (n, free) = self.own;
-        let field = reduced_field(&*system.gradients(), 0.0, q, xi)?.ok()?;
-        let (misses, gradients) = positions(system, n, 0.0, q);
-        let rows: Vec<usize> = self.shape.iter().copied().chain(N..N + free).collect();
-        let value = |row: usize| if row < N { field.velocity[row] } else { field.acceleration[row - N] };
-        let mut values = DVector::from_iterator(rows.len(), rows.iter().map(|row| value(*row)));
-        let columns: Vec<usize> = (0..n).chain(N..N + moving).collect();
-        let mut slope = field.derivative.select_rows(&rows).select_columns(&columns);
-        values.extend(misses.iter().copied());
-        slope = slope.resize_vertically(rows.len() + misses.len(), 0.0);
-        slope.view_mut((rows.len(), 0), gradients.shape()).copy_from(&gradients);
+        let field = system.reduced_field(0.0, q, xi)?.ok()?;
+        let (misses, gradients) = positions(system, self.own.0, 0.0, q);
+        let all = [field.velocity, field.acceleration].concat();
+        let rows = self.rows();
+        let values: DVector<f64> =
+            rows.iter().map(|row| all[*row]).chain(misses.iter().copied()).collect::<Vec<_>>().into();
+        let slope = field.derivative.select_rows(&rows).select_columns(&self.columns(moving));
+        let slope = with_rows(slope, &gradients);
         (values.iter().chain(&slope).all(|x| x.is_finite())).then_some((values, slope))
     }
 
+    /// The shape and the quasi-velocities, by their places among all coordinates and these.
+    fn rows(&self) -> Vec<usize> {
+        let all = self.q.len();
+        self.shape.iter().copied().chain(all..all + self.own.1).collect()
+    }
+
+    /// All coordinates of its own and so many quasi-velocities.
+    fn columns(&self, moving: usize) -> Vec<usize> {
+        let all = self.q.len();
+        (0..self.own.0).chain(all..all + moving).collect()
+    }
+
     /// The equilibrium at a root, with its linear equations.
-    fn linearised(&self, system: &dyn SeededMechanics<N, M>, q: &[f64; N], xi: &[f64; N]) -> Option<Equilibrium<N>> {
+    fn linearised(&self, system: &dyn Mechanism, q: &[f64], xi: &[f64]) -> Option<Equilibrium> {
         let (n, free) = self.own;
-        let field = reduced_field(&*system.gradients(), 0.0, q, xi)?.ok()?;
+        let field = system.reduced_field(0.0, q, xi)?.ok()?;
         let (_, gradients) = positions(system, n, 0.0, q);
         let along = AllowedDirections::new(&gradients, &self.shape, free)?;
-        let rows: Vec<usize> = self.shape.iter().copied().chain(N..N + free).collect();
-        let columns: Vec<usize> = (0..n).chain(N..N + free).collect();
-        let slope = along.restrict(&field.derivative.select_rows(&rows).select_columns(&columns));
+        let slope = along.restrict(&field.derivative.select_rows(&self.rows()).select_columns(&self.columns(free)));
         let (family, flow) = with_family(slope, 0.0, 0.0, |[re, _]| re)?;
         let stable = flow.is_stable_flow();
-        let shape = self.shape.clone();
-        Some(Equilibrium { q: *q, v: field.velocity, xi: *xi, shape, family, flow: flow.values, stable })
+        let (q, xi, shape) = (q.to_vec(), xi.to_vec(), self.shape.clone());
+        Some(Equilibrium { q, v: field.velocity, xi, shape, family, flow: flow.values, stable })
     }
 
     /// Whether two equilibria are the same, or of one family: of quasi-velocities of the same signs; at rest with as many unstable directions.
-    fn alike(&self, a: &Equilibrium<N>, b: &Equilibrium<N>) -> bool {
+    fn alike(&self, a: &Equilibrium, b: &Equilibrium) -> bool {
         let near = |x: f64, y: f64| (x - y).abs() <= 1e-8 * (1.0 + x.abs().max(y.abs()));
         let sign = |x: f64| if x.abs() <= 1e-8 { 0.0 } else { x.signum() };
         let angles = self.system.angles();
@@ -205,12 +215,13 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
             let turns = if angles[*i] { (apart / (2.0 * PI)).round() * 2.0 * PI } else { 0.0 };
             near(a.q[*i], b.q[*i] + turns)
         };
-        let same = self.shape.iter().all(place) && (0..N).all(|k| near(a.xi[k], b.xi[k]));
-        let unstable = |e: &Equilibrium<N>| if e.stable { 0 } else { e.flow.iter().filter(|z| z[0] > 1e-8).count() };
+        let velocities = || a.xi.iter().zip(&b.xi);
+        let same = self.shape.iter().all(place) && velocities().all(|(a, b)| near(*a, *b));
+        let unstable = |e: &Equilibrium| if e.stable { 0 } else { e.flow.iter().filter(|z| z[0] > 1e-8).count() };
         same || a.family > 0
             && a.family == b.family
             && (!a.is_rest() || unstable(a) == unstable(b))
-            && (0..N).all(|k| near(sign(a.xi[k]), sign(b.xi[k])))
+            && velocities().all(|(a, b)| near(sign(*a), sign(*b)))
     }
 }
 

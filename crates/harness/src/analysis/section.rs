@@ -1,12 +1,12 @@
+use crate::Method;
 use crate::run::integrate_pieces;
-use crate::{Again, Method};
-use dla::{Close, Crossing, Event, RunError, Schedule, State, Subject, Watch};
+use dla::{Close, Crossing, Event, Mechanism, RunError, Schedule, Watch};
 
 /// The crossings of a surface by one motion.
 #[derive(Debug, Clone)]
-pub struct Section<const N: usize> {
+pub struct Section {
     /// The crossings in the order of time, located to rounding: each is the end of a step that is shortened to end there.
-    pub crossings: Vec<Crossing<N>>,
+    pub crossings: Vec<Crossing>,
     /// Which of them are so close that others may have been missed.
     pub close: Option<Close>,
     /// The step that failed, if one did.
@@ -19,18 +19,16 @@ pub struct Section<const N: usize> {
 const SAMPLES: u32 = 2;
 
 /// Where a motion crosses the surface on which an event's function of time and state is zero (Poincare 1881).
-#[inline(never)]
-pub fn section<const N: usize, const M: usize>(
-    subject: Subject<'_, N, M>,
+pub fn section(
+    system: &dyn Mechanism,
     method: &Method,
     schedule: &Schedule,
-    (q, v): ([f64; N], [f64; N]),
-    surface: &Event<'_, N>,
-) -> Section<N> {
-    let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), ());
+    (q, v): (&[f64], &[f64]),
+    surface: &Event<'_>,
+) -> Section {
+    let mut watch = Watch::new(method, std::slice::from_ref(surface), ());
     watch.samples = SAMPLES;
-    let outcome =
-        integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut watch);
+    let outcome = integrate_pieces(system, method, schedule, &mut system.state(q, v), &mut watch);
     let (crossings, close) = (watch.crossings().to_vec(), watch.close());
     let interrupted = matches!(outcome, Ok(made) if made < schedule.steps);
     Section { crossings, close, failure: outcome.err(), interrupted }

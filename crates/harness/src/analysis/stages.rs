@@ -1,11 +1,9 @@
-use super::flow::{Block, ReducedFlow, Slope, admissible};
+use super::flow::{Block, slope};
 use dla::convergence::tolerances::{BLIND, ROUNDINGS, SETTLED, STALL_OF_FIXED_POINT};
-use dla::{History, NewtonError, SensitivityError};
+use dla::{History, Mechanism, NewtonError, SensitivityError};
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
-use lagrangian::{Scalar, Seeded, from_fn};
+use lagrangian::{Scalar, Seeded};
 
-/// The most stages of a method.
-const MOST: usize = 8;
 const MAX_SWEEPS: u32 = 100;
 
 /// A Runge-Kutta method on the reduced equations: collocation, or an explicit one.
@@ -86,31 +84,29 @@ impl Stages {
         }
     }
 
-    /// The increments of `q` and `xi` over a step from `t` to `t + h`, with their derivatives in some variables of `(q0, xi0)`.
-    pub(super) fn increments<const N: usize, const M: usize>(
+    /// The increments of `q` and `xi` over a step from `t` to `t + h`, in one list, with their derivatives in some variables of the start `z`,
+    /// which is `q` and `xi`.
+    pub(super) fn increments(
         &self,
-        flow: &dyn ReducedFlow<N, M>,
+        system: &dyn Mechanism,
         (t, h): (f64, f64),
-        q0: &[f64; N],
-        xi0: &[f64; N],
+        z: &[f64],
         block: Block<'_>,
-    ) -> Result<Slope<N>, SensitivityError> {
-        let variables = block.all().map(|(_, variable)| if variable < N { q0[variable] } else { xi0[variable - N] });
-        let start: Vec<f64> = variables.collect();
-        let (q0, xi0) = (block.seeded(q0, 0), block.seeded(&admissible::<N, M>(xi0), N));
-        let count = self.nodes.len().min(MOST);
-        let first = flow.slope(t, &q0, &xi0).ok_or(NO_EQUATIONS)?;
-        let mut slopes = [first; MOST];
+    ) -> Result<Vec<Seeded>, SensitivityError> {
+        let start: Vec<f64> = block.all().map(|(_, variable)| z[variable]).collect();
+        let z = block.seeded(z);
+        let first = slope(system, t, &z).ok_or(NO_EQUATIONS)?;
+        let mut slopes = vec![first; self.nodes.len()];
         let [mut values, mut derivatives] = [Change { moved: f64::INFINITY, ..Change::default() }; 2];
         let (mut settled, mut history) = ([false; 2], History::new());
         for iteration in 1..=MAX_SWEEPS {
             let before = (values, derivatives);
             (values, derivatives) = (Change::default(), Change::default());
-            for i in 0..count {
-                let [dq, dxi] = sum(h, &self.coefficients[i], &slopes[..count]);
-                let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
-                let slope = flow.slope(t + self.nodes[i] * h, &q, &xi).ok_or(NO_EQUATIONS)?;
-                for (new, old) in slope.iter().flatten().zip(slopes[i].iter().flatten()) {
+            for (i, (node, coefficients)) in self.nodes.iter().zip(&self.coefficients).enumerate() {
+                let mut there = sum(h, coefficients, &slopes);
+                there.iter_mut().zip(&z).for_each(|(there, z)| *there = *z + *there);
+                let slope = slope(system, t + node * h, &there).ok_or(NO_EQUATIONS)?;
+                for (new, old) in slope.iter().zip(&slopes[i]) {
                     values.add(old.re, new.re);
                     values.rounded(new, &start);
                     new.eps.iter().zip(&old.eps).for_each(|(new, old)| derivatives.add(*old, *new));
@@ -124,7 +120,7 @@ impl Stages {
             // Rounding goes round in cycles, and the two need not agree when each is small.
             settled = [settled[0] || values.settled(before.0), settled[1] || derivatives.settled(before.1)];
             if settled == [true; 2] {
-                return Ok(sum(h, &self.weights, &slopes[..count]));
+                return Ok(sum(h, &self.weights, &slopes));
             }
         }
         let correction = derivatives.moved / derivatives.size;
@@ -136,13 +132,11 @@ const NO_EQUATIONS: SensitivityError =
     SensitivityError::Unsupported { reason: "the system has no reduced equations, or they are degenerate" };
 
 /// `h sum_j factors[j] slopes[j]`.
-fn sum<const N: usize>(h: f64, factors: &[f64], slopes: &[Slope<N>]) -> Slope<N> {
-    let mut total = [[Seeded::zero(); N]; 2];
+fn sum(h: f64, factors: &[f64], slopes: &[Vec<Seeded>]) -> Vec<Seeded> {
+    let mut total = vec![Seeded::zero(); slopes.first().map_or(0, Vec::len)];
     for (factor, slope) in factors.iter().zip(slopes) {
         if *factor != 0.0 {
-            for (total, slope) in total.iter_mut().flatten().zip(slope.iter().flatten()) {
-                *total += *slope * (h * factor);
-            }
+            total.iter_mut().zip(slope).for_each(|(total, slope)| *total += *slope * (h * factor));
         }
     }
     total

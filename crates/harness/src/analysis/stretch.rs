@@ -1,8 +1,8 @@
 use super::pace::Pace;
-use super::tangent::{Local, StepTangent, Stepped};
+use super::tangent::{Local, Stepped, Steps};
 use super::volume::Volume;
 use crate::Blocks;
-use dla::{Observer, RunError, SensitivityError, State, StepReport, TangentRunError, View};
+use dla::{AnyState, Observer, Report, RunError, SensitivityError, TangentRunError, View};
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -61,14 +61,14 @@ pub(super) struct Sums {
 
 /// The observer that propagates orthonormal tangent vectors by the tangent maps of the steps, and sums up the logarithms of their growth:
 /// `D Phi Q = Q' R`, with the next vectors `Q'` and `ln R_ii` (Benettin et al. 1980, Meccanica 15, 9-20).
-pub(super) struct Stretch<'a, const N: usize, const M: usize> {
-    tangent: &'a dyn StepTangent<N, M>,
+pub(super) struct Stretch<'a> {
+    tangent: &'a Steps<'a>,
     frame: DMatrix<f64>,
     /// Steps that are not counted, and those that are.
     settle: u64,
     steps: u64,
     /// The last node, with the equations there.
-    before: Option<(f64, State<N>, Local<N>)>,
+    before: Option<(f64, AnyState, Local)>,
     pub(super) sums: Sums,
     /// The same where the volumes agreed last.
     agreed: Sums,
@@ -76,18 +76,13 @@ pub(super) struct Stretch<'a, const N: usize, const M: usize> {
     /// Of `ln R_ii / h`.
     pub(super) blocks: Vec<Blocks>,
     pub(super) running: Vec<Running>,
-    pub(super) pace: Option<Pace<N>>,
+    pub(super) pace: Option<Pace>,
     pub(super) failure: Option<LyapunovFailure>,
 }
 
-impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
+impl<'a> Stretch<'a> {
     /// An observer with `count` tangent vectors, for `settle` steps that are not counted and `steps` that are, of a method of that order.
-    pub(super) fn new(
-        tangent: &'a dyn StepTangent<N, M>,
-        order: u32,
-        count: usize,
-        (settle, steps): (u64, u64),
-    ) -> Self {
+    pub(super) fn new(tangent: &'a Steps<'a>, order: u32, count: usize, (settle, steps): (u64, u64)) -> Self {
         // No direction is special to the system: fractions of multiples of irrational numbers, another for each vector.
         let part = |i: usize, j: usize| ((i + 1) as f64 * GOLDEN * ((j + 2) as f64).sqrt()).fract() - 0.5;
         let sums = Sums { logs: vec![0.0; count], divergence: 0.0, time: 0.0 };
@@ -107,21 +102,21 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
         }
     }
 
-    fn begin(&mut self, t: f64, state: &State<N>) -> Result<(), TangentRunError> {
+    fn begin(&mut self, t: f64, state: &AnyState) -> Result<(), TangentRunError> {
         let local = self.tangent.begin(t, state).map_err(|source| TangentRunError { step: 1, time: t, source })?;
         let mut pace = Pace::new(self.tangent.weights(t, state), self.settle, self.steps);
         pace.add(0, t, &local.xi, &local.rate);
         self.pace = Some(pace);
-        self.before = Some((t, *state, local));
+        self.before = Some((t, state.clone(), local));
         Ok(())
     }
 
-    fn advance(&mut self, k: u64, t: f64, state: &State<N>, report: &StepReport<M>) -> Result<(), LyapunovFailure> {
-        let Some((t0, start, local)) = self.before else { return Ok(()) };
+    fn advance(&mut self, k: u64, t: f64, state: &AnyState, report: &Report) -> Result<(), LyapunovFailure> {
+        let Some((t0, start, local)) = self.before.take() else { return Ok(()) };
         let failed = |source| TangentRunError { step: k, time: t0, source };
         let h = t - t0;
-        let Stepped { matrix, change, end, next } =
-            self.tangent.step((t0, h), &start, state, *report).map_err(failed)?;
+        let Stepped { matrix, change, divergence, next } =
+            self.tangent.step((t0, h), [&start, state], report).map_err(failed)?;
         let qr = (&matrix * &self.frame).qr();
         let logs: Vec<f64> = qr.r().diagonal().iter().map(|r| r.abs().ln()).collect();
         if !logs.iter().all(|log| log.is_finite()) {
@@ -129,11 +124,11 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
             return Err(failed(SensitivityError::Unsupported { reason }).into());
         }
         self.frame = qr.q();
-        self.before = Some((t, *state, next));
         if let Some(pace) = &mut self.pace {
             pace.add(k, t, &next.xi, &next.rate);
         }
-        let ends = [local.divergence, end.divergence];
+        self.before = Some((t, state.clone(), next));
+        let ends = [local.divergence, divergence];
         if k > self.settle {
             self.sums.time += h;
             self.sums.divergence += 0.5 * h * (ends[0] + ends[1]) + change;
@@ -163,12 +158,12 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Stretch<'_, N, M> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Stretch<'_> {
+    fn start(&mut self, node: &View<'_>) {
         self.failure = self.begin(node.t, node.state).err().map(Into::into);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         if self.failure.is_none() {
             self.failure = self.advance(node.k, node.t, node.state, report).err();
         }
