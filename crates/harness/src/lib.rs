@@ -26,8 +26,8 @@ pub use assembled::{
     recommend_assembly, run_assembly, run_assembly_saved, run_assembly_watched, sample_assembly,
 };
 pub use cost::{step_evaluations, step_time};
-pub use drift::{Blocks, Drift, DriftVerdict, Energies, EnergyJump};
 pub use dla::{METHODS, Method, MethodError, MethodInfo, MethodKind, SubstepSummary};
+pub use drift::{Blocks, Drift, DriftVerdict, Energies, EnergyJump};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate_on, integrate_pieces, run, timed};
 pub use saved::{SavedCrossing, SavedRun, Saving, run_saved, run_saved_watched};

@@ -184,7 +184,10 @@ impl Meter {
         if let Some(substeps) = &self.substeps {
             substeps.save(checkpoint);
         }
-        let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q.iter().copied()));
+        let samples = self
+            .samples
+            .iter()
+            .flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q.iter().copied()));
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
 

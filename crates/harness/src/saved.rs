@@ -187,7 +187,8 @@ pub fn run_saved_watched(
                     Some((t, state)) => watch.resumed(t, state),
                     None => watch,
                 };
-                let outcome = substepped_part(piece, &mut *integrator, limits, &times, chunk.clone(), state, &mut watch);
+                let outcome =
+                    substepped_part(piece, &mut *integrator, limits, &times, chunk.clone(), state, &mut watch);
                 run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
                 run.unseen += watch.unseen();
                 let ended = watch.ended().is_some();

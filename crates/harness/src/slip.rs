@@ -20,7 +20,15 @@ pub(crate) struct Slip {
 
 impl Slip {
     pub(crate) fn new(method: &Method, h: f64) -> Self {
-        Self { rules: Rules::new(method.rule(), method.rule()), h, before: None, mean: Vec::new(), place: Vec::new(), step: 0.0, leaf: None }
+        Self {
+            rules: Rules::new(method.rule(), method.rule()),
+            h,
+            before: None,
+            mean: Vec::new(),
+            place: Vec::new(),
+            step: 0.0,
+            leaf: None,
+        }
     }
 
     pub(crate) fn step_max(&self) -> f64 {

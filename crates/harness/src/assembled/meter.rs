@@ -141,7 +141,12 @@ impl<'a> AssemblyMeter<'a> {
 
     fn keep(&mut self, assembly: &Assembly, t: f64, state: &AssemblyState) {
         let node = self.node(assembly, t, state);
-        self.samples.push(Sample { t, q: first(&node.q).to_vec(), energy_error: self.bucket.0, constraint: self.bucket.1 });
+        self.samples.push(Sample {
+            t,
+            q: first(&node.q).to_vec(),
+            energy_error: self.bucket.0,
+            constraint: self.bucket.1,
+        });
         self.bucket = (0.0, 0.0);
         if self.shown.is_none() {
             self.nodes.push(node);
@@ -222,7 +227,8 @@ impl<'a> AssemblyMeter<'a> {
         if let Some(substeps) = &self.substeps {
             substeps.save(checkpoint);
         }
-        let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
+        let numbers = |s: &Sample| [&[s.t, s.energy_error, s.constraint][..], &s.q].concat();
+        let samples = self.samples.iter().flat_map(numbers);
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
 

@@ -19,7 +19,8 @@ pub fn recommend_assembly<const N: usize>(
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut taken = Vec::new();
         let of_run = |AssemblyRunError { step, time, source }| RunError::new(step, time, source.step_error());
-        states_at(assembly, method, schedule, start, times, |_, _, state| taken.push(seen(state).to_vec())).map_err(of_run)?;
+        states_at(assembly, method, schedule, start, times, |_, _, state| taken.push(seen(state).to_vec()))
+            .map_err(of_run)?;
         Ok(taken)
     })
 }

@@ -32,12 +32,7 @@ pub(super) type Of<'a, Q> = &'a dyn Fn(f64, &[f64], &[f64]) -> Q;
 
 impl<Q: Quantities> Summary<Q> {
     /// The summary of the first node alone.
-    pub(super) fn first(
-        system: &dyn Mechanism,
-        t: f64,
-        state: &AnyState,
-        of: Of<'_, Q>,
-    ) -> Self {
+    pub(super) fn first(system: &dyn Mechanism, t: f64, state: &AnyState, of: Of<'_, Q>) -> Self {
         let end = of(t, &state.unwrapped(), state.v());
         let energy = system.energy(t, state.q(), state.v());
         let (low, high) = (end.clone(), end.clone());
@@ -47,13 +42,7 @@ impl<Q: Quantities> Summary<Q> {
     }
 
     /// Takes in one more node.
-    pub(super) fn see(
-        &mut self,
-        system: &dyn Mechanism,
-        t: f64,
-        state: &AnyState,
-        of: Of<'_, Q>,
-    ) {
+    pub(super) fn see(&mut self, system: &dyn Mechanism, t: f64, state: &AnyState, of: Of<'_, Q>) {
         (self.t, self.end) = (t, of(t, &state.unwrapped(), state.v()));
         for (k, value) in self.end.as_ref().iter().enumerate() {
             let (low, high) = (&mut self.low.as_mut()[k], &mut self.high.as_mut()[k]);
