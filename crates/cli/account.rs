@@ -5,44 +5,44 @@ use crate::error::CliError;
 use crate::table::number;
 use crate::trigger::{Events, Happened, Trigger, WatchedTriggers};
 use crate::{json, substeps};
-use dla::{Close, Event, Observer, Schedule, fitted};
+use dla::{Close, Event, Node, Observer, Schedule, fitted};
 use harness::{Method, Progress, Record, Request, SavedCrossing, recommend, run_observed};
-use scene::{AnyScene, Built, RunSettings, StartPlace};
+use scene::{AnyScene, Built, RunSettings};
 use serde_json::{Map, Value, json};
 
 /// A run to be made.
-pub(crate) struct Account<'a, const N: usize, const M: usize> {
-    pub(crate) system: Built<'a, N, M>,
+pub(crate) struct Account<'a> {
+    pub(crate) system: &'a Built<'a>,
     pub(crate) scene: &'a AnyScene,
     pub(crate) method: &'a Method,
-    pub(crate) request: Request<N>,
+    pub(crate) request: Request,
     /// What is reported, and then what ends the run, `ends` of them.
     watched: Vec<WatchedTriggers<'a, Coordinate>>,
     ends: usize,
 }
 
 /// A run that was made.
-pub(crate) struct Made<const N: usize> {
-    pub(crate) record: Record<N>,
+pub(crate) struct Made {
+    pub(crate) record: Record,
     /// What happened, where that was asked for.
     pub(crate) events: Option<Events>,
 }
 
-impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
+impl<'a> Account<'a> {
     /// The run of a scene from its start, forward or backward in time, with the steps of the scene or the longest that meet a tolerance
     /// (m or rad), whose `search` shows its steps; a method that chooses steps of its own is to aim for the tolerance already.
     ///
     /// # Errors
     /// [`CliError`] where the system has no such quantity, or no step meets the tolerance.
     pub(crate) fn new(
-        system: Built<'a, N, M>,
+        system: &'a Built<'a>,
         (scene, method): (&'a AnyScene, &'a Method),
-        (q, v): StartPlace<N>,
+        (q, v): (&[f64], &[f64]),
         (tolerance, backward): (Option<f64>, bool),
         (reported, ending): (&'a [Trigger], &'a [Trigger]),
         search: &mut dyn Progress,
     ) -> Result<Self, CliError> {
-        let watched = reported.iter().chain(ending).map(|trigger| trigger.on(&system)).collect::<Result<_, _>>()?;
+        let watched = reported.iter().chain(ending).map(|trigger| trigger.on(system)).collect::<Result<_, _>>()?;
         let mut schedule = scene.schedule();
         if backward {
             let run = scene.run();
@@ -54,19 +54,26 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
             let whole = method.undivided();
-            let found = recommend((&system).into(), &whole, (q, v), (scene.run().duration, tolerance), search);
+            let found = recommend(&*system, &whole, (q, v), (scene.run().duration, tolerance), search);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
         }
-        let request = Request { schedule, q, v, samples: 1 };
+        let request = Request { schedule, q: q.to_vec(), v: v.to_vec(), samples: 1 };
         Ok(Self { system, scene, method, request, watched, ends: ending.len() })
     }
 
+    /// The first node, of which nothing but the state is known.
+    pub(crate) fn start(&self) -> Node {
+        let Request { schedule, q, v, .. } = &self.request;
+        let (q, v) = (q.clone(), v.clone());
+        Node { k: 0, t: schedule.t0, q, v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None }
+    }
+
     /// The events of the run.
-    pub(crate) fn events(&self) -> Vec<Event<'_, N>> {
+    pub(crate) fn events(&self) -> Vec<Event<'_>> {
         let (reported, ending) = self.watched.split_at(self.watched.len() - self.ends);
-        let ends = ending.iter().map(|watched| watched.event(&self.system).terminal());
-        reported.iter().map(|watched| watched.event(&self.system)).chain(ends).collect()
+        let ends = ending.iter().map(|watched| watched.event(self.system).terminal());
+        reported.iter().map(|watched| watched.event(self.system)).chain(ends).collect()
     }
 
     /// The events and the samples of a step, for the identity of a saved run; `None` where no event is looked for.
@@ -78,8 +85,8 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
     }
 
     /// What happened, in words and numbers; none where nothing was looked for.
-    pub(crate) fn happened(&self, crossings: &[SavedCrossing<N>], close: Option<Close>) -> Option<Events> {
-        let happened = crossings.iter().filter_map(|crossing| Happened::of(&self.system, &self.watched, crossing));
+    pub(crate) fn happened(&self, crossings: &[SavedCrossing], close: Option<Close>) -> Option<Events> {
+        let happened = crossings.iter().filter_map(|crossing| Happened::of(self.system, &self.watched, crossing));
         (!self.watched.is_empty()).then(|| Events::new(happened, close))
     }
 
@@ -87,20 +94,20 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
     pub(crate) fn observed(
         &self,
         samples: u32,
-        observer: &mut dyn Observer<N, M>,
+        observer: &mut dyn Observer,
         progress: &mut dyn Progress,
-    ) -> Made<N> {
+    ) -> Made {
         let events = self.events();
         let made =
-            run_observed((&self.system).into(), self.method, &self.request, (&events, samples), observer, progress);
+            run_observed(&*self.system, self.method, &self.request, (&events, samples), observer, progress);
         let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
         Made { record: made.record, events: self.happened(&crossings, made.close) }
     }
 
     /// The object of `run --json`.
-    pub(crate) fn object(&self, made: &Made<N>) -> Value {
+    pub(crate) fn object(&self, made: &Made) -> Value {
         let Made { record, events } = made;
-        let mut object = json::record_of(self.scene.name(), record, &state(&self.system, record));
+        let mut object = json::record_of(self.scene.name(), record, &state(self.system, record));
         substeps::add_json(&mut object, record);
         if let Some(events) = events {
             events.add_to(&mut object);
@@ -109,11 +116,11 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
     }
 
     /// Where a run ends, a line for each number; those of a sleigh together.
-    pub(crate) fn end(&self, record: &Record<N>) -> Vec<(String, String)> {
+    pub(crate) fn end(&self, record: &Record) -> Vec<(String, String)> {
         if let Some(system) = self.system.sleigh() {
             return crate::table::end_of_sleigh(&system.sleigh_state(&record.q, &record.v));
         }
-        numbers(&self.system, record.t, &record.q, &record.v)
+        numbers(self.system, record.t, &record.q, &record.v)
     }
 }
 
@@ -129,7 +136,7 @@ pub(crate) fn no_step_backward() -> CliError {
 }
 
 /// Where a run ends, by name.
-pub(crate) fn state<const N: usize, const M: usize>(system: &Built<'_, N, M>, record: &Record<N>) -> Value {
+pub(crate) fn state(system: &Built<'_>, record: &Record) -> Value {
     let mut end = Map::new();
     end.insert("t".to_owned(), json!(record.t));
     let state = system.state(record.t, &record.q, &record.v).into_iter();
@@ -138,11 +145,11 @@ pub(crate) fn state<const N: usize, const M: usize>(system: &Built<'_, N, M>, re
 }
 
 /// A state, a line for each number.
-pub(crate) fn numbers<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
+pub(crate) fn numbers(
+    system: &Built<'_>,
     t: f64,
-    q: &[f64; N],
-    v: &[f64; N],
+    q: &[f64],
+    v: &[f64],
 ) -> Vec<(String, String)> {
     let line = |value: f64, unit: &str| format!("{} {unit}", number(value)).trim_end().to_owned();
     let state = system.state(t, q, v).into_iter();

@@ -7,10 +7,10 @@ use crate::progress::Interruptible;
 use crate::saves::Saves;
 use crate::table::ComparisonRow;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
-use dla::{Schedule, State};
+use dla::{AnyState, Schedule};
 use harness::report::{self, HEADINGS, Report, SceneReport, Series};
 use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request};
-use scene::{AnyScene, Built, Visitor};
+use scene::{AnyScene, Built};
 use sleigh::Exact;
 use std::path::PathBuf;
 
@@ -94,7 +94,8 @@ pub(crate) fn compare_scene(
         return train::compare_scene(scene, &whole, methods, interrupt);
     }
     notes::moves(scene);
-    scene.visit(Compare { scene, methods, saves, interrupt })?
+    let built = scene.built()?;
+    Compare { scene, methods, saves, interrupt }.on(&built.system(), (&built.q, &built.v))
 }
 
 struct Compare<'a> {
@@ -111,11 +112,11 @@ pub(crate) fn progress_of<'a>(scene: &str, label: &str, steps: u64, interrupt: &
 
 impl Compare<'_> {
     /// The runs of all methods, as far as they come.
-    fn records<const N: usize, const M: usize>(
+    fn records(
         &mut self,
-        system: &Built<'_, N, M>,
-        request: &Request<N>,
-    ) -> Result<Vec<Record<N>>, CliError> {
+        system: &Built<'_>,
+        request: &Request,
+    ) -> Result<Vec<Record>, CliError> {
         let name = self.scene.name();
         let mut records = Vec::new();
         for method in self.methods {
@@ -127,14 +128,14 @@ impl Compare<'_> {
                 AnyScene::Sleigh(scene) => (name, scene),
                 AnyScene::Text(scene) => (name, &(&scene.words, &scene.start, &scene.run)),
             };
-            records.push(self.saves.run(scene, system.into(), method, request, &mut progress)?);
+            records.push(self.saves.run(scene, &**system, method, request, &mut progress)?);
             progress.bar.finish_and_clear();
         }
         Ok(records)
     }
 
     /// How far the runs have come, where Ctrl-C ended them or the reference of their ends.
-    fn interrupted<const N: usize>(&self, records: &[Record<N>], referred: bool) -> Option<String> {
+    fn interrupted(&self, records: &[Record], referred: bool) -> Option<String> {
         let whole = records.iter().filter(|record| !record.interrupted).count();
         let part = records.iter().find(|record| record.interrupted);
         let part = part.map(|record| format!(", {} up to t = {} s", record.method.name, table::number(record.t)));
@@ -146,22 +147,15 @@ impl Compare<'_> {
     }
 }
 
-impl Visitor for Compare<'_> {
-    type Output = Result<Comparison, CliError>;
-
-    fn visit<const N: usize, const M: usize>(
-        mut self,
-        system: Built<'_, N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+impl Compare<'_> {
+    fn on(mut self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<Comparison, CliError> {
         let name = self.scene.name();
-        let request = Request { schedule: self.scene.schedule(), q, v, samples: 1000 };
-        let records = self.records(&system, &request)?;
+        let request = Request { schedule: self.scene.schedule(), q: q.to_vec(), v: v.to_vec(), samples: 1000 };
+        let records = self.records(system, &request)?;
         let exact = exact(self.scene);
-        let start = State::new(q, v, system.angles());
+        let start = system.state(q, v);
         let mut progress = progress_of(name, "reference", 4 * request.schedule.steps, self.interrupt);
-        let reference = ComparisonReference::of(&system, exact.as_ref(), &request.schedule, start, &mut progress);
+        let reference = ComparisonReference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
         let referred = !matches!(reference, ComparisonReference::Interrupted);
         let drifts: Vec<(&str, Drift)> =
@@ -175,12 +169,12 @@ impl Visitor for Compare<'_> {
             let better = whole.map_or_else(Vec::new, |record| better_than(&record.energy.drift, &drifts));
             rows.push(ComparisonRow {
                 cells: table::cells(record, error),
-                json: json::compared_of(name, record, &account::state(&system, record), error, &better),
+                json: json::compared_of(name, record, &account::state(system, record), error, &better),
                 better: table::better(record, &better),
                 failure: table::failure(record),
                 refused: record.refusal().is_some(),
             });
-            series.push(series_of(&system, record));
+            series.push(series_of(system, record));
         }
         // The longest run: one that failed ends before the others.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
@@ -216,29 +210,28 @@ pub(crate) fn exact(scene: &AnyScene) -> Option<Exact> {
 }
 
 /// The configuration of a sleigh in closed form: a rotor is not told of.
-pub(crate) fn place_at<const N: usize>(exact: &Exact, t: f64) -> [f64; N] {
-    let (place, _) = exact.at(t).to_coordinates();
-    std::array::from_fn(|i| place.get(i).copied().unwrap_or(0.0))
+pub(crate) fn place_at(exact: &Exact, t: f64) -> Vec<f64> {
+    exact.at(t).to_coordinates().0.to_vec()
 }
 
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
-enum ComparisonReference<'a, const N: usize> {
+enum ComparisonReference<'a> {
     Exact(&'a Exact),
     Computed {
         t: f64,
-        end: [f64; N],
+        end: Vec<f64>,
     },
     None,
     /// A signal ended the work on it.
     Interrupted,
 }
 
-impl<'a, const N: usize> ComparisonReference<'a, N> {
+impl<'a> ComparisonReference<'a> {
     fn of<const M: usize>(
-        system: &Built<'_, N, M>,
+        system: &Built<'_>,
         exact: Option<&'a Exact>,
         schedule: &Schedule,
-        mut state: State<N>,
+        mut state: AnyState,
         progress: &mut Interruptible<'_>,
     ) -> Self {
         if let Some(exact) = exact {
@@ -252,7 +245,7 @@ impl<'a, const N: usize> ComparisonReference<'a, N> {
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_on(system, &method, &fine, &mut state, &mut (), progress) {
+        match harness::integrate_on(&**system, &method, &fine, &mut state, &mut (), progress) {
             Ok(made) if made < fine.steps => Self::Interrupted,
             Ok(made) => Self::Computed { t: fine.time(made), end: state.unwrapped() },
             Err(_) => Self::None,
@@ -260,22 +253,23 @@ impl<'a, const N: usize> ComparisonReference<'a, N> {
     }
 
     /// The configuration at the time `t`, the end of a run.
-    fn at(&self, time: f64) -> Option<[f64; N]> {
+    fn at(&self, time: f64) -> Option<Vec<f64>> {
         match self {
             Self::Exact(exact) => Some(place_at(exact, time)),
-            Self::Computed { t, end } if (t - time).abs() <= 1e-9 * t.abs() => Some(*end),
+            Self::Computed { t, end } if (t - time).abs() <= 1e-9 * t.abs() => Some(end.clone()),
             Self::Computed { .. } | Self::None | Self::Interrupted => None,
         }
     }
 }
 
 /// What the pictures show: the path, where there are coordinates `x` and `y`, with the heading, where an angle has a name of one, and a rotor.
-fn series_of<const N: usize, const M: usize>(system: &Built<'_, N, M>, record: &Record<N>) -> Series {
+fn series_of(system: &Built<'_>, record: &Record) -> Series {
     // A run without a step has nothing to draw.
     let samples = if record.steps == 0 { &[][..] } else { &record.samples[..] };
     let column = |k: Option<usize>| -> Vec<f64> {
-        let of = |k: usize| samples.iter().map(move |sample| system.value(k, sample.t, &sample.q, &[0.0; N]));
-        k.map_or_else(Vec::new, |k| of(k).collect())
+        let rest = vec![0.0; system.size().n];
+        let of = |k: usize| samples.iter().map(|sample| system.value(k, sample.t, &sample.q, &rest)).collect();
+        k.map_or_else(Vec::new, of)
     };
     let path = system.named("x").zip(system.named("y"));
     let heading = path.and_then(|_| HEADINGS.into_iter().find_map(|name| system.named(name)));

@@ -16,7 +16,7 @@ impl Coordinate {
     ///
     /// # Errors
     /// What is wrong, with the names that there are.
-    pub(crate) fn of<const N: usize, const M: usize>(system: &Built<'_, N, M>, name: &str) -> Result<Self, String> {
+    pub(crate) fn of(system: &Built<'_>, name: &str) -> Result<Self, String> {
         let mut quantities = system.quantities();
         match system.named(name.trim()) {
             Some(k) => Ok(Self { k, quantity: quantities.swap_remove(k) }),
@@ -25,23 +25,23 @@ impl Coordinate {
     }
 
     /// Its value at a state, as it is: an angle with its turns.
-    pub(crate) fn value<const N: usize, const M: usize>(
+    pub(crate) fn value(
         &self,
-        system: &Built<'_, N, M>,
+        system: &Built<'_>,
         t: f64,
-        q: &[f64; N],
-        v: &[f64; N],
+        q: &[f64],
+        v: &[f64],
     ) -> f64 {
         system.value(self.k, t, q, v)
     }
 
     /// The same, an angle within half a turn of zero.
-    pub(crate) fn shown<const N: usize, const M: usize>(
+    pub(crate) fn shown(
         &self,
-        system: &Built<'_, N, M>,
+        system: &Built<'_>,
         t: f64,
-        q: &[f64; N],
-        v: &[f64; N],
+        q: &[f64],
+        v: &[f64],
     ) -> f64 {
         let value = self.value(system, t, q, v);
         if self.quantity.angle { within_a_turn(value) } else { value }
@@ -86,7 +86,7 @@ impl Range {
     ///
     /// # Errors
     /// What is wrong, with the names that are accepted.
-    pub(crate) fn on<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> Result<usize, String> {
+    pub(crate) fn on(&self, system: &Built<'_>) -> Result<usize, String> {
         let starts = system.quantities().into_iter().enumerate().filter(|(k, _)| system.gives_start(*k));
         let accepted = || format!("{RANGE}; NAME is one of {}", names(starts.map(|(_, quantity)| quantity).collect()));
         match system.named(&self.name) {

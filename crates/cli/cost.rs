@@ -1,9 +1,9 @@
 use crate::args::SceneArguments;
 use crate::error::CliError;
 use crate::{inspect, notes, table, terminal};
-use dla::{RunError, Schedule};
+use dla::Schedule;
 use harness::{step_evaluations, step_time};
-use scene::{AnyScene, Built, Scene, SceneEffect, TextScene, Visitor};
+use scene::{AnyScene, Scene, SceneEffect, TextScene};
 use serde_json::json;
 
 /// The steps over which a cost is a mean.
@@ -33,10 +33,11 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     let mut rows = Vec::new();
     let mut failures = Vec::new();
     for (names, part) in parts {
-        let ns_per_step = part.visit(Time(schedule))?;
-        // Of other types than those that are timed: they evaluate as often, and are half as many to be compiled.
-        let evaluations_per_step = part.visit(Evaluations(schedule))?;
-        match ns_per_step.and_then(|ns| Ok((ns, evaluations_per_step?))) {
+        let built = part.built()?;
+        let (system, q, v) = (built.system(), &built.q, &built.v);
+        let measured = step_time(&*system, &schedule, q, v)
+            .and_then(|ns| Ok((ns, step_evaluations(&*system, &schedule, q, v)?)));
+        match measured {
             Ok((ns_per_step, evaluations_per_step)) => {
                 rows.push(CostRow { effects: names, ns_per_step, evaluations_per_step });
             }
@@ -110,24 +111,4 @@ fn cells(rows: &[CostRow]) -> Vec<Vec<String>> {
         ]
     };
     rows.iter().map(cells).collect()
-}
-
-struct Time(Schedule);
-
-impl Visitor for Time {
-    type Output = Result<f64, RunError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        step_time(&*system, &self.0, q, v)
-    }
-}
-
-struct Evaluations(Schedule);
-
-impl Visitor for Evaluations {
-    type Output = Result<f64, RunError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        step_evaluations(&*system, &self.0, q, v)
-    }
 }

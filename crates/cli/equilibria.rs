@@ -4,11 +4,11 @@ use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::steady::{self, Searched, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
-use dla::{Schedule, State, Trajectory};
-use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, differentiable, relative_equilibria_within};
+use dla::{Schedule, Trajectory};
+use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, has_map, relative_equilibria};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
-use scene::{AnyScene, Built, SceneSystem, Visitor};
+use scene::{AnyScene, Built, SceneSystem};
 use sleigh::Sleigh;
 
 /// The speeds at which orbits of the phase portrait begin, relative to that of the scene's energy, and their turn rates,
@@ -34,7 +34,7 @@ struct MotionRow {
 pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
     let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
     let method = inspect::method(scene.run())?;
-    if differentiable::<3, 1>(&method).is_none() {
+    if !has_map(&method) {
         return Err(CliError::NotDifferentiated { method: method.info().name });
     }
     if let Some(path) = &arguments.picture {
@@ -46,7 +46,9 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         check_file(path, arguments.scene.force)?;
     }
     notes::moves(&scene);
-    let found = scene.visit(Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() })??;
+    let built = scene.built()?;
+    let find = Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() };
+    let found = find.on(&built.system(), (&built.q, &built.v))?;
     if let Some(path) = &arguments.picture {
         let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
@@ -68,27 +70,18 @@ struct Find<'a> {
     portrait: bool,
 }
 
-impl Visitor for Find<'_> {
-    type Output = Result<FoundMotions, CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Find<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<FoundMotions, CliError> {
         let Self { scene, method, portrait } = self;
         if !system.jump_times(0.0, scene.run().duration).is_empty() {
             return Err(EquilibriumError::TimeDependent.into());
         }
-        let Some(steps) = differentiable::<N, M>(method) else {
-            return Err(CliError::NotDifferentiated { method: method.info().name });
-        };
         let own = system.own();
-        let all = relative_equilibria_within(&*system, own, &q, &v)?;
+        let all = relative_equilibria(&**system, own, q, v)?;
         let h = scene.run().actual_step();
-        let mut step = |step: f64, start: &State<N>| {
-            let (mut end, schedule) = (*start, Schedule { t0: 0.0, step, steps: 1 });
-            (integrate_pieces(&system, method, &schedule, &mut end, &mut ()) == Ok(1)).then_some(end)
-        };
-        let mut map = DiscreteMap::new((&*system, own), &*steps, &mut step);
-        let mut row = |e: &Equilibrium<N>| MotionRow {
-            motion: steady::motion(&system, e),
+        let mut map = DiscreteMap::new(&**system, own, method);
+        let mut row = |e: &Equilibrium| MotionRow {
+            motion: steady::motion(system, e),
             rates: system.sleigh().map(|sleigh| sleigh.sleigh_state(&e.q, &e.v)).map(|at| [at.speed, at.turn_rate]),
             stability: Stability {
                 family: e.family,
@@ -102,8 +95,8 @@ impl Visitor for Find<'_> {
         let searched = Searched { places: all.places, reach: all.reach, motions: all.motions };
         let orbits = match (scene, system.sleigh()) {
             (AnyScene::Sleigh(scene), Some(blade)) if portrait => {
-                let start = blade.sleigh_state(&q, &v);
-                orbits((&system, blade), &scene.sleigh, [start.speed, start.turn_rate], method, &scene.schedule(), q)
+                let start = blade.sleigh_state(q, v);
+                orbits((system, blade), &scene.sleigh, [start.speed, start.turn_rate], method, &scene.schedule(), q)
             }
             _ => Vec::new(),
         };
@@ -112,13 +105,13 @@ impl Visitor for Find<'_> {
 }
 
 /// Orbits from both sides of slow turns, at some speeds forward and back, of the energy of that speed and turn rate.
-fn orbits<const N: usize, const M: usize>(
-    (system, blade): (&Built<'_, N, M>, &dyn SceneSystem<N, M>),
+fn orbits(
+    (system, blade): (&Built<'_>, &dyn SceneSystem),
     sleigh: &Sleigh,
     [speed, turn_rate]: [f64; 2],
     method: &Method,
     schedule: &Schedule,
-    q: [f64; N],
+    q: &[f64],
 ) -> Vec<Vec<[f64; 2]>> {
     let energy = sleigh.mass() * speed * speed + sleigh.pivot_inertia() * turn_rate * turn_rate;
     let speed = (energy / sleigh.mass()).sqrt();
@@ -126,12 +119,12 @@ fn orbits<const N: usize, const M: usize>(
     let mut orbits = Vec::new();
     for level in levels.into_iter().flat_map(|level| [level, -level]) {
         for turn in [turn, -turn] {
-            let xi =
-                std::array::from_fn(|k| [level * speed, level.abs() * turn * speed].get(k).copied().unwrap_or(0.0));
-            let Ok(v) = system.velocity_of(0.0, &q, &xi) else { continue };
-            let mut nodes = Trajectory::<N, M>::every(1);
+            let mut xi = vec![level * speed, level.abs() * turn * speed];
+            xi.resize(q.len(), 0.0);
+            let Ok(v) = system.velocity_of(0.0, q, &xi) else { continue };
+            let mut nodes = Trajectory::every(1);
             // An orbit that fails is shown as far as it goes.
-            let _ = integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut nodes);
+            let _ = integrate_pieces(&**system, method, schedule, &mut system.state(q, &v), &mut nodes);
             let seen = nodes.nodes().iter().map(|node| blade.sleigh_state(&node.q, &node.v));
             orbits.push(seen.map(|state| [state.speed, state.turn_rate]).collect());
         }

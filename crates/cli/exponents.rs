@@ -7,17 +7,26 @@ use crate::provenance::Provenance;
 use crate::starts::with_energy;
 use dla::Schedule;
 use harness::analysis::LyapunovError;
-use scene::{AnyScene, Built, StartPlace};
+use scene::{AnyScene, Built, BuiltScene, StartPlace};
 use serde_json::json;
 
 /// The part of it before the run that is not counted, where nobody says.
 const SETTLE: f64 = 0.1;
 
 /// What is said of a scene without a motion of its own.
-pub(crate) fn imposed() -> CliError {
+fn imposed() -> CliError {
     CliError::Request(
         "the scene imposes velocities (servo, tracer): accepted are scenes that only the blade constrains".to_owned(),
     )
+}
+
+/// The system of a scene that has a motion of its own.
+///
+/// # Errors
+/// [`CliError::Request`] of a scene that imposes velocities.
+pub(crate) fn free(scene: &AnyScene) -> Result<BuiltScene, CliError> {
+    let built = scene.built()?;
+    if built.imposes_velocities() { Err(imposed()) } else { Ok(built) }
 }
 
 /// The steps that are counted, and those before them.
@@ -42,14 +51,14 @@ pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interr
 }
 
 /// A start with the energy that is asked for.
-pub(crate) fn asked<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    start: StartPlace<N>,
+pub(crate) fn asked(
+    system: &Built<'_>,
+    start: StartPlace,
     wanted: Option<f64>,
-) -> Result<StartPlace<N>, CliError> {
+) -> Result<StartPlace, CliError> {
     let Some(wanted) = wanted else { return Ok(start) };
     with_energy(system, &start, wanted).ok_or_else(|| {
-        let at_rest = system.energy(0.0, &start.0, &[0.0; N]);
+        let at_rest = system.energy(0.0, &start.0, &vec![0.0; start.1.len()]);
         CliError::Request(format!(
             "--energy {wanted:?}: no multiple of the velocity of the start has this energy; at rest at the start the \
                 energy is {at_rest:?} J"

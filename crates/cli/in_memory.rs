@@ -3,9 +3,9 @@ use crate::called::{Caller, ShownToCaller};
 use crate::error::CliError;
 use crate::trigger::Trigger;
 use crate::{inspect, substeps, train};
-use dla::{Node, Samples, State, Substeps, Trajectory, View};
+use dla::{AnyState, Node, Samples, Substeps, Trajectory, View};
 use harness::{Again, EVENT_SAMPLES, Method};
-use scene::{AnyScene, Built, Column, Visitor};
+use scene::{AnyScene, Built, Column};
 use serde_json::Value;
 
 /// A run to be made, whose nodes stay in memory: the flags of `noslip run`.
@@ -92,8 +92,8 @@ pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<Ru
     {
         return Ok(train::in_memory((scene, train), request, &method, caller)?);
     }
-    let made = scene.visit(InMemory { scene, request, method: &method, caller }).map_err(CliError::from)?;
-    Ok(made?)
+    let built = scene.built().map_err(CliError::from)?;
+    Ok(InMemory { scene, request, method: &method, caller }.on(&built.system(), (&built.q, &built.v))?)
 }
 
 /// So many numbers of runs are kept in memory at most.
@@ -127,10 +127,8 @@ pub(crate) fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
 }
 
-impl Visitor for InMemory<'_> {
-    type Output = Result<RunResult, CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl InMemory<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<RunResult, CliError> {
         let Self {
             scene,
             request: RunRequest { every, times, tolerance, events, until, backward, .. },
@@ -142,22 +140,22 @@ impl Visitor for InMemory<'_> {
         let (run, steps) = ((scene, method), (*tolerance, *backward));
         let account = Account::new(system, run, (q, v), steps, (&reported, &ending), &mut search)?;
         let schedule = account.request.schedule;
-        let start = Node { k: 0, t: schedule.t0, q, v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None };
-        self.request.fits(schedule.steps, system.columns(&start).len())?;
+        self.request.fits(schedule.steps, system.columns(&account.start()).len())?;
         let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
-        let (mut trajectory, sampled): (_, Vec<Node<N, M>>);
+        let (mut trajectory, sampled): (_, Vec<Node>);
         let (made, nodes) = if times.is_empty() {
             trajectory = Trajectory::every(*every);
             let made = account.observed(EVENT_SAMPLES, &mut trajectory, &mut shown);
             (made, trajectory.nodes())
         } else {
-            let mut samples = Samples::new(Again { method, own: &system }, times);
+            let mut samples = Samples::new(method, times);
             let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
             // The motion at the times asked for, up to where the run comes; the work is not known there.
-            let node = |(t, state): (&f64, &State<N>)| {
+            let node = |(t, state): (&f64, &AnyState)| {
                 let piece = system.smooth_piece(*t);
                 let view = View { system: &*piece, k: 0, t: *t, state };
-                let (q, v, energy, constraint) = (state.unwrapped(), *state.v(), view.energy(), view.constraint());
+                let (energy, constraint) = (view.energy(), view.constraint());
+                let (q, v) = (state.unwrapped(), state.v().to_vec());
                 Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
             };
             sampled = times.iter().zip(samples.taken()).map(node).collect();

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use sleigh::SleighState;
 
 /// The object that `run --json` prints of a sleigh.
-pub(crate) fn record<const N: usize>(scene: &str, run: &Record<N>, end: &SleighState) -> Value {
+pub(crate) fn record(scene: &str, run: &Record, end: &SleighState) -> Value {
     record_of(scene, run, &state(run.t, end))
 }
 
@@ -15,7 +15,7 @@ fn state(t: f64, at: &SleighState) -> Value {
 }
 
 /// The object that `run --json` prints, with the state at the end.
-pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &Value) -> Value {
+pub(crate) fn record_of(scene: &str, record: &Record, end: &Value) -> Value {
     let mut object = json!({
         "scene": scene,
         "method": record.method.name,
@@ -68,9 +68,9 @@ pub(crate) fn failure(failure: &RunError) -> Value {
 
 /// The same object in a row of `compare --json`, with the error at the end, the drift of the energy, the constraint in its
 /// other senses, the cost, and the methods that it overtakes. A run that did not reach its end has no error there and no verdict.
-pub(crate) fn compared<const N: usize>(
+pub(crate) fn compared(
     scene: &str,
-    run: &Record<N>,
+    run: &Record,
     end: &SleighState,
     error: Option<f64>,
     better: &[(&str, f64)],
@@ -79,9 +79,9 @@ pub(crate) fn compared<const N: usize>(
 }
 
 /// The same with the state at the end.
-pub(crate) fn compared_of<const N: usize>(
+pub(crate) fn compared_of(
     scene: &str,
-    run: &Record<N>,
+    run: &Record,
     end: &Value,
     error: Option<f64>,
     better: &[(&str, f64)],

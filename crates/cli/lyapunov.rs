@@ -2,14 +2,15 @@ use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
-use crate::exponents::{asked, imposed, provenance, refused, schedule};
+use crate::exponents::{asked, free, provenance, refused, schedule};
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::{inspect, json, notes, progress, stability_map, table, terminal};
+use dla::has_tangents;
 use harness::Method;
-use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
+use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, kaplan_yorke, lyapunov};
 use harness::report::{Chart, Layer};
-use scene::{AnyScene, Built, Column, MAX_STEPS, Visitor};
+use scene::{AnyScene, Built, Column, MAX_STEPS};
 use serde_json::{Value, json};
 
 /// What is measured where nobody says (s): of one motion, and of each of a map.
@@ -28,18 +29,19 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     check_settle(arguments, &scene)?;
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, &shared.scene, shared.force)).transpose()?;
     notes::moves(&scene);
-    let outcome = match &arguments.map[..] {
-        [] => scene.visit_free(Exponents { arguments, scene: &scene, method, file })?,
+    let built = free(&scene)?;
+    let start = (&built.q[..], &built.v[..]);
+    match &arguments.map[..] {
+        [] => Exponents { arguments, scene: &scene, method, file }.on(&built.system(), start),
         [across, up] => {
             let axes = [across, up];
-            scene.visit_free(stability_map::Map { arguments, scene: &scene, method, axes, file })?
+            stability_map::Map { arguments, scene: &scene, method, axes, file }.on(&built.system(), start)
         }
         _ => {
             let problem = "--map must be given twice: first the horizontal axis, then the vertical axis";
-            return Err(CliError::Request(problem.to_owned()));
+            Err(CliError::Request(problem.to_owned()))
         }
-    };
-    outcome.ok_or_else(imposed)?
+    }
 }
 
 /// Refuses a time before the run that has more steps than any run may have.
@@ -61,23 +63,20 @@ struct Exponents<'a> {
     file: Option<ChartFile<'a>>,
 }
 
-impl Visitor for Exponents<'_> {
-    type Output = Result<(), CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let (q, v) = asked(&system, (q, v), self.arguments.energy)?;
+impl Exponents<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<(), CliError> {
+        let (q, v) = asked(system, (q.to_vec(), v.to_vec()), self.arguments.energy)?;
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let exponents = self.arguments.exponents.map(|count| count as usize);
         let request = LyapunovRequest { schedule, settle, exponents, q, v };
         let interrupt = Interrupt::listen();
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
         let mut progress = Interruptible { bar, interrupt: &interrupt };
-        let its = system.own();
-        let found = harness::analysis::lyapunov_within((&*system, &system), its, &self.method, &request, &mut progress);
+        let found = lyapunov(&**system, system.own(), &self.method, &request, &mut progress);
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
         let made = interrupt.asked().then(|| format!("the exponents cover {} s", table::number(found.time)));
-        let told = self.tell(&found, system.energy(0.0, &q, &v), made.as_deref());
+        let told = self.tell(&found, system.energy(0.0, &request.q, &request.v), made.as_deref());
         unless_interrupted(made, None, told)
     }
 }

@@ -4,7 +4,7 @@ use harness::Record;
 use scene::AnyScene;
 
 /// Warns of steps of a run that change the energy though no force does that work.
-pub(crate) fn warn_of_jumps<const N: usize>(record: &Record<N>) {
+pub(crate) fn warn_of_jumps(record: &Record) {
     if let Some(jump) = record.energy.jump {
         terminal::say("warning", &format!("{}: {jump}", record.method.name));
     }

@@ -3,11 +3,11 @@ use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::{inspect, progress, table, terminal};
-use dla::{RunError, Schedule, State};
+use dla::{Mechanism, RunError, Schedule};
 use harness::analysis::{Rounds, weighted_mean};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_on};
-use scene::{Built, MAX_STEPS, PathShape, PathSpec, RunSettings, Scene, SceneEffect, Visitor};
+use scene::{MAX_STEPS, PathShape, PathSpec, RunSettings, Scene, SceneEffect, Started};
 use serde_json::{Value, json};
 use sleigh::ClosedPath;
 use sleigh::planimeter::Holonomy;
@@ -47,7 +47,9 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     let schedule = |loops: u64| Schedule { t0: 0.0, step: path.period / steps as f64, steps: loops * steps };
 
     let turned = |scene: &Scene, loops: u64| {
-        let turns = scene.visit(Loops { method: &method, schedule: schedule(loops), every: steps })?;
+        let Started { system, q, v } = scene.system()?;
+        let loops = Loops { method: &method, schedule: schedule(loops), every: steps };
+        let turns = loops.on(&*system.mechanism(), (&q, &v));
         turns.map_err(|error| CliError::Computation(vec![format!("{}: {error}", method.info().name)]))
     };
     let turns = turned(&scene, loops)?;
@@ -132,16 +134,14 @@ struct Loops<'a> {
     every: u64,
 }
 
-impl Visitor for Loops<'_> {
-    type Output = Result<Vec<f64>, RunError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Loops<'_> {
+    fn on(self, system: &dyn Mechanism, (q, v): (&[f64], &[f64])) -> Result<Vec<f64>, RunError> {
         let Self { method, schedule, every } = self;
         let bar = progress::bar(method.info().name, schedule.steps);
-        let mut rounds = Rounds::<N>::new(2, every);
-        let mut state = State::new(q, v, system.angles());
+        let mut rounds = Rounds::new(2, every);
+        let mut state = system.state(q, v);
         let mut advance = |steps| bar.inc(steps);
-        let outcome = integrate_on(&system, method, &schedule, &mut state, &mut rounds, &mut advance);
+        let outcome = integrate_on(system, method, &schedule, &mut state, &mut rounds, &mut advance);
         bar.finish_and_clear();
         outcome.map(|_| rounds.each())
     }

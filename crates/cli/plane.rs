@@ -85,7 +85,7 @@ impl Plane {
     ///
     /// # Errors
     /// That the system has no such quantity.
-    pub(crate) fn on<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> Result<Surface, String> {
+    pub(crate) fn on(&self, system: &Built<'_>) -> Result<Surface, String> {
         Ok(match &self.what {
             What::Of(name, value) => {
                 let quantity = Coordinate::of(system, name).map_err(|error| format!("{error}, or t; {ACCEPTED}"))?;
@@ -97,7 +97,7 @@ impl Plane {
 
     /// What a section shows where nobody says: of a sleigh what it turns by, else the first coordinate that is not the plane's, and its
     /// rate.
-    pub(crate) fn axes<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> [String; 2] {
+    pub(crate) fn axes(&self, system: &Built<'_>) -> [String; 2] {
         let name = if let What::Of(name, _) = &self.what { name.as_str() } else { "t" };
         let axes = match name {
             "heading" => ["speed", "turn_rate"],
@@ -120,12 +120,12 @@ impl Plane {
 
 impl Surface {
     /// The function whose zeros are on the surface; of an angle, also the opposite ones.
-    pub(crate) fn value<const N: usize, const M: usize>(
+    pub(crate) fn value(
         &self,
-        system: &Built<'_, N, M>,
+        system: &Built<'_>,
         t: f64,
-        q: &[f64; N],
-        v: &[f64; N],
+        q: &[f64],
+        v: &[f64],
     ) -> f64 {
         match self {
             Self::Of(coordinate, value) => {
@@ -137,12 +137,12 @@ impl Surface {
     }
 
     /// Whether a zero of the function is on the surface.
-    pub(crate) fn holds<const N: usize, const M: usize>(
+    pub(crate) fn holds(
         &self,
-        system: &Built<'_, N, M>,
+        system: &Built<'_>,
         t: f64,
-        q: &[f64; N],
-        v: &[f64; N],
+        q: &[f64],
+        v: &[f64],
     ) -> bool {
         match self {
             Self::Of(coordinate, value) if coordinate.quantity.angle => {

@@ -15,7 +15,7 @@ use harness::precision::{
     Bench, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
-use scene::{AnyScene, Built, Visitor};
+use scene::{AnyScene, Built};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -126,7 +126,8 @@ pub(crate) fn measure(
         return train::measure(scene, &whole, methods, longest, interrupt);
     }
     notes::moves(scene);
-    scene.visit(Measure { scene, methods, longest, chosen, interrupt })?
+    let built = scene.built()?;
+    Measure { scene, methods, longest, chosen, interrupt }.on(&built.system(), (&built.q, &built.v))
 }
 
 /// What keeps a method from having any point; a refusal only where the method was asked for by name.
@@ -148,16 +149,14 @@ struct Measure<'a> {
     interrupt: &'a Interrupt,
 }
 
-impl Visitor for Measure<'_> {
-    type Output = Result<Measurement, CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let apart = |a: &[f64; N], b: &[f64; N]| system.distance(a, b);
+impl Measure<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<Measurement, CliError> {
+        let apart = |a: &[f64], b: &[f64]| system.distance(a, b);
         let exact = exact(self.scene);
         let mut duration = self.scene.run().duration;
         let mut halvings = 0;
         let (motion, reference) = loop {
-            let motion = ReferenceMotion::new(&system, q, v, duration);
+            let motion = ReferenceMotion::new(&**system, q, v, duration);
             let reference = Reference::converged(&motion, &apart).map(|found| {
                 let exact = exact.as_ref().map(|exact| place_at(exact, duration));
                 known(exact, &found, apart)
@@ -186,12 +185,12 @@ impl Visitor for Measure<'_> {
 }
 
 /// The end in closed form, with its distance from the computed one as its error; the computed end where there is none.
-fn known<const N: usize>(
-    exact: Option<[f64; N]>,
-    computed: &Reference<N>,
-    apart: impl Fn(&[f64; N], &[f64; N]) -> f64,
-) -> KnownEnd<[f64; N]> {
-    let Reference { q: end, steps, error, .. } = *computed;
+fn known(
+    exact: Option<Vec<f64>>,
+    computed: &Reference,
+    apart: impl Fn(&[f64], &[f64]) -> f64,
+) -> KnownEnd<Vec<f64>> {
+    let (end, steps, error) = (computed.q.clone(), computed.steps, computed.error);
     match exact {
         Some(exact) => {
             let error = apart(&exact, &end).max(f64::EPSILON);

@@ -12,7 +12,7 @@ use crate::trigger::Events;
 use crate::{inspect, notes, progress, resume, substeps, table, terminal, train};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
 use harness::{Method, MethodKind, Progress, Saving, run_saved_watched};
-use scene::{AnyScene, Built, Visitor};
+use scene::{AnyScene, Built};
 use std::cell::RefCell;
 use std::path::Path;
 
@@ -44,7 +44,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         return train::run(arguments, (scene, train), &method, is_backward(arguments), out);
     }
     notes::moves(&scene);
-    scene.visit(Run { arguments, scene: &scene, method: &method, out })?
+    let built = scene.built()?;
+    Run { arguments, scene: &scene, method: &method, out }.on(&built.system(), (&built.q, &built.v))
 }
 
 /// Whether a run goes backward in time.
@@ -93,37 +94,36 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// In parts that are saved, or from a part that was, with the output as far as it had come; and what else went wrong.
-    fn saved<const N: usize, const M: usize>(
+    fn saved(
         &self,
-        account: &Account<'_, N, M>,
+        account: &Account<'_>,
         (identity, read): (&Checkpoint, Option<&Checkpoint>),
         output: &RefCell<Option<Output<'a>>>,
         progress: &mut dyn Progress,
-    ) -> Result<(Made<N>, Result<(), CliError>), CliError> {
+    ) -> Result<(Made, Result<(), CliError>), CliError> {
         let RunArguments { resume: from, event_samples, .. } = self.arguments;
         let Account { system, method, request, .. } = account;
         let (to, every) = self.arguments.saves().unzip();
         let mut saver = resume::Saver::new(to);
         let mut save = |made: &Checkpoint| saver.save(&with_position(made, output));
         let mut saving = Saving { identity, from: read, every, save: &mut save };
-        let mut sink = |node: &Node<N, M>| write(system, node, output);
+        let mut sink = |node: &Node| write(system, node, output);
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
         let events = account.events();
         let watched = (&events[..], *event_samples);
-        let outcome = run_saved_watched(system.into(), method, request, watched, &mut saving, nodes, progress);
+        let outcome = run_saved_watched(&**system, method, request, watched, &mut saving, nodes, progress);
         let made = outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
         Ok((Made { record: made.record, events: account.happened(&made.crossings, made.close) }, saver.outcome()))
     }
 
     /// The output, begun, or as far as it had come.
-    fn output<const N: usize, const M: usize>(
+    fn output(
         &self,
-        account: &Account<'_, N, M>,
+        account: &Account<'_>,
         read: Option<&Checkpoint>,
     ) -> Result<Option<Output<'a>>, CliError> {
         let Some(asked) = self.out else { return Ok(None) };
-        let (t, q, v) = (account.request.schedule.t0, account.request.q, account.request.v);
-        let start = Node { k: 0, t, q, v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None };
+        let start = account.start();
         let scene = (self.scene.title(), self.scene.run(), self.scene.to_toml().ok());
         let provenance = provenance(self.arguments, scene, &account.request.schedule);
         let columns = (account.system.columns(&start), self.arguments.every);
@@ -132,9 +132,9 @@ impl<'a> Run<'a> {
 }
 
 /// Hands a node to the output.
-fn write<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    node: &Node<N, M>,
+fn write(
+    system: &Built<'_>,
+    node: &Node,
     output: &RefCell<Option<Output<'_>>>,
 ) {
     if let Some(output) = output.borrow_mut().as_mut() {
@@ -142,10 +142,8 @@ fn write<const N: usize, const M: usize>(
     }
 }
 
-impl Visitor for Run<'_> {
-    type Output = Result<(), CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Run<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<(), CliError> {
         let RunArguments { resume, tolerance, event, until, event_samples, .. } = self.arguments;
         let checkpoint = self.arguments.saves().map(|(path, _)| path);
         let run = (self.scene, self.method);
@@ -169,7 +167,7 @@ impl Visitor for Run<'_> {
         let made = if checkpoint.is_some() || resume.is_some() {
             self.saved(&account, (&identity, read.as_ref()), &output, &mut progress)
         } else {
-            let mut sink = |node: &Node<N, M>| write(&system, node, &output);
+            let mut sink = |node: &Node| write(system, node, &output);
             let mut nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
             Ok((account.observed(*event_samples, &mut nodes, &mut progress), Ok(())))
         };

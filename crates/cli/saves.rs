@@ -2,7 +2,7 @@ use crate::args::CompareArguments;
 use crate::error::CliError;
 use crate::files::check_folder;
 use crate::resume;
-use dla::{Checkpoint, Subject};
+use dla::{Checkpoint, Mechanism};
 use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
 use std::path::{Path, PathBuf};
 
@@ -42,16 +42,16 @@ impl Saves {
 
     /// Makes a run of a scene, of that name and with these contents: at once where nothing is to be saved, else from checkpoint to
     /// checkpoint.
-    pub(crate) fn run<const N: usize, const M: usize>(
+    pub(crate) fn run(
         &self,
         scene: (&str, &dyn std::fmt::Debug),
-        subject: Subject<'_, N, M>,
+        system: &dyn Mechanism,
         method: &Method,
-        request: &Request<N>,
+        request: &Request,
         progress: &mut dyn Progress,
-    ) -> Result<Record<N>, CliError> {
+    ) -> Result<Record, CliError> {
         if self.to.is_none() && self.from.is_none() {
-            return Ok(harness::run(subject, method, request, progress));
+            return Ok(harness::run(system, method, request, progress));
         }
         let name = format!("{}.save", method.info().name);
         let identity = resume::identity_of_whole(scene, method, &request.schedule);
@@ -62,10 +62,10 @@ impl Saves {
         let mut save = |made: &Checkpoint| saver.save(made);
         let every = to.as_ref().map(|_| self.every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved(subject, method, request, &mut saving, None, progress);
+        let outcome = run_saved(system, method, request, &mut saving, None, progress);
         let mut record = outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
         saver.outcome()?;
-        record.wall_seconds = timed(subject, method, request, record.steps, progress);
+        record.wall_seconds = timed(system, method, request, record.steps, progress);
         Ok(record)
     }
 }

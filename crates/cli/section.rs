@@ -4,7 +4,7 @@ use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::coordinate::Coordinate;
 use crate::error::CliError;
-use crate::exponents::{asked, imposed};
+use crate::exponents::{asked, free};
 use crate::interrupt::Interrupt;
 use crate::provenance::Provenance;
 use crate::starts::spread;
@@ -14,7 +14,7 @@ use dla::{Close, Event, RunError};
 use harness::Method;
 use harness::analysis::in_parallel;
 use harness::report::{Chart, Layer};
-use scene::{AnyScene, Built, Column, Quantity, StartPlace, Visitor};
+use scene::{AnyScene, Built, Column, Quantity, StartPlace};
 use serde_json::{Value, json};
 
 /// How long each motion is followed where nobody says (s).
@@ -43,7 +43,8 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     }
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, &shared.scene, shared.force)).transpose()?;
     notes::moves(&scene);
-    scene.visit_free(Sections { arguments, scene: &scene, method, file })?.ok_or_else(imposed)?
+    let built = free(&scene)?;
+    Sections { arguments, scene: &scene, method, file }.on(&built.system(), (&built.q, &built.v))
 }
 
 struct Sections<'a> {
@@ -81,18 +82,16 @@ struct Told {
     axes: [Quantity; 2],
 }
 
-impl Visitor for Sections<'_> {
-    type Output = Result<(), CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Sections<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<(), CliError> {
         let plane = &self.arguments.plane;
         let asked_for = |flag: &'static str| move |problem: String| CliError::Request(format!("{flag}: {problem}"));
-        let surface = plane.on(&system).map_err(asked_for("--plane"))?;
-        let axis = |name: &str| Coordinate::of(&system, name).map_err(asked_for("--axes"));
+        let surface = plane.on(system).map_err(asked_for("--plane"))?;
+        let axis = |name: &str| Coordinate::of(system, name).map_err(asked_for("--axes"));
         let axes = match self.arguments.axes.as_deref() {
             Some([across, up]) => [axis(across)?, axis(up)?],
             _ => {
-                let [across, up] = plane.axes(&system);
+                let [across, up] = plane.axes(system);
                 [axis(&across)?, axis(&up)?]
             }
         };
@@ -104,9 +103,9 @@ impl Visitor for Sections<'_> {
             );
         }
         let interrupt = Interrupt::listen();
-        let first = asked(&system, (q, v), self.arguments.energy)?;
+        let first = asked(system, (q.to_vec(), v.to_vec()), self.arguments.energy)?;
         let sleigh = if let AnyScene::Sleigh(scene) = self.scene { Some(&scene.sleigh) } else { None };
-        let starts: Vec<StartPlace<N>> = spread(&system, &first, sleigh, self.arguments.starts);
+        let starts: Vec<StartPlace> = spread(system, &first, sleigh, self.arguments.starts);
         let schedule = self.scene.schedule();
         let bar = progress::bar("starts", starts.len() as u64);
         let in_state = system.in_state();
@@ -114,17 +113,17 @@ impl Visitor for Sections<'_> {
             if interrupt.asked() {
                 return None;
             }
-            let function = |t: f64, state: &dla::State<N>| surface.value(&system, t, &state.unwrapped(), state.v());
+            let function = |t: f64, q: &[f64], v: &[f64]| surface.value(system, t, q, v);
             let event = Event::new(plane.text.clone(), function);
             let event =
                 if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section((&system).into(), &self.method, &schedule, starts[i], &event);
-            let point = |crossing: &dla::Crossing<N>| {
+            let found = harness::analysis::section(&**system, &self.method, &schedule, (&starts[i].0, &starts[i].1), &event);
+            let point = |crossing: &dla::Crossing| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
-                surface.holds(&system, t, &q, v).then(|| SectionPoint {
+                surface.holds(system, t, &q, v).then(|| SectionPoint {
                     t,
                     state: (0..in_state).map(|k| system.value(k, t, &q, v)).collect(),
-                    shown: axes.each_ref().map(|axis| axis.shown(&system, t, &q, v)),
+                    shown: axes.each_ref().map(|axis| axis.shown(system, t, &q, v)),
                 })
             };
             bar.inc(1);

@@ -9,9 +9,9 @@ use crate::provenance::label;
 use crate::starts::with_energy;
 use crate::{progress, table, terminal};
 use harness::Method;
-use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov_within};
+use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov};
 use harness::report::{Cells, Chart, Layer};
-use scene::{AnyScene, Built, Column, Visitor};
+use scene::{AnyScene, Built, Column};
 use serde_json::{Value, json};
 
 /// The most starts.
@@ -54,12 +54,10 @@ fn count_left(cells: &[Cell]) -> usize {
     cells.iter().filter(|cell| matches!(cell, Cell::Left)).count()
 }
 
-impl Visitor for Map<'_> {
-    type Output = Result<(), CliError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Map<'_> {
+    pub(crate) fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<(), CliError> {
         let [across, up] = self.axes;
-        let on = |range: &Range| range.on(&system).map_err(|problem| CliError::Request(format!("--map: {problem}")));
+        let on = |range: &Range| range.on(system).map_err(|problem| CliError::Request(format!("--map: {problem}")));
         let quantities = [on(across)?, on(up)?];
         let [across_of, up_of] = quantities;
         if across_of == up_of {
@@ -75,20 +73,21 @@ impl Visitor for Map<'_> {
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let interrupt = Interrupt::listen();
         let bar = progress::bar("starts", count as u64);
+        let start = (q.to_vec(), v.to_vec());
         let cell = |i: usize| {
             if interrupt.asked() {
                 return Cell::Left;
             }
-            let start = system.with(&(q, v), across_of, across.value(i % across.cells));
+            let start = system.with(&start, across_of, across.value(i % across.cells));
             let start = start.and_then(|start| system.with(&start, up_of, up.value(i / across.cells)));
             let start = match self.arguments.energy {
-                Some(wanted) => start.and_then(|start| with_energy(&system, &start, wanted)),
+                Some(wanted) => start.and_then(|start| with_energy(system, &start, wanted)),
                 None => start,
             };
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    match lyapunov_within((&*system, &system), system.own(), &self.method, &request, &mut ()) {
+                    match lyapunov(&**system, system.own(), &self.method, &request, &mut ()) {
                         // One that a signal may have ended is left out.
                         Ok(_) if interrupt.asked() => return Cell::Left,
                         Ok(found) => match found.failure {

@@ -3,18 +3,19 @@ use sleigh::Sleigh;
 use std::f64::consts::TAU;
 
 /// The start with velocities so many times as large that it has that energy (J); none where it cannot.
-pub(crate) fn with_energy<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    (q, v): &StartPlace<N>,
+pub(crate) fn with_energy(
+    system: &Built<'_>,
+    (q, v): &StartPlace,
     wanted: f64,
-) -> Option<StartPlace<N>> {
+) -> Option<StartPlace> {
     // The energy is quadratic in the velocity.
-    let at = |factor: f64| system.energy(0.0, q, &v.map(|v| factor * v));
+    let scaled = |factor: f64| -> Vec<f64> { v.iter().map(|v| factor * v).collect() };
+    let at = |factor: f64| system.energy(0.0, q, &scaled(factor));
     let (rest, ahead, back) = (at(0.0), at(1.0), at(-1.0));
     let (square, linear) = (0.5 * (ahead + back) - rest, 0.5 * (ahead - back));
     let half = 0.5 * linear / square;
     let factor = (half * half - (rest - wanted) / square).sqrt() - half;
-    (factor.is_finite() && factor >= 0.0).then(|| (*q, v.map(|v| factor * v)))
+    (factor.is_finite() && factor >= 0.0).then(|| (q.clone(), scaled(factor)))
 }
 
 /// The steps of sequences that fill squares and cubes evenly (Roberts 2018): powers of the roots of `x^(d + 1) = x + 1`.
@@ -28,29 +29,29 @@ fn sequence(dimensions: usize) -> impl Fn(u64, usize) -> f64 {
 
 /// `count` starts: the first as it is, and others at the same place and of the same energy, with directions of motion that fill the sphere of
 /// directions evenly; those of a sleigh differ in heading too. Those that the energy does not allow are left out.
-pub(crate) fn spread<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    first: &StartPlace<N>,
+pub(crate) fn spread(
+    system: &Built<'_>,
+    first: &StartPlace,
     sleigh: Option<&Sleigh>,
     count: u64,
-) -> Vec<StartPlace<N>> {
+) -> Vec<StartPlace> {
     let wanted = system.energy(0.0, &first.0, &first.1);
     let turned = |i: u64| match system.sleigh().zip(sleigh) {
         Some((blade, sleigh)) => turned(system, blade, sleigh, first, i),
         None => directed(system, first, i),
     };
     let other = |i: u64| with_energy(system, &turned(i)?, wanted);
-    std::iter::once(*first).chain((1..count).filter_map(other)).collect()
+    std::iter::once(first.clone()).chain((1..count).filter_map(other)).collect()
 }
 
 /// The sleigh with another heading, moving in another direction.
-fn turned<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    blade: &dyn SceneSystem<N, M>,
+fn turned(
+    system: &Built<'_>,
+    blade: &dyn SceneSystem,
     sleigh: &Sleigh,
-    first: &StartPlace<N>,
+    first: &StartPlace,
     i: u64,
-) -> Option<StartPlace<N>> {
+) -> Option<StartPlace> {
     let [turn, direction] =
         [0.754_877_666_246_692_7, 0.569_840_290_998_053_2].map(|step| TAU * (step * i as f64).fract());
     let (sin, cos) = direction.sin_cos();
@@ -59,15 +60,15 @@ fn turned<const N: usize, const M: usize>(
     ["heading", "speed", "turn_rate"]
         .into_iter()
         .zip(values)
-        .try_fold(*first, |start, (name, value)| system.with(&start, system.named(name)?, value))
+        .try_fold(first.clone(), |start, (name, value)| system.with(&start, system.named(name)?, value))
 }
 
 /// The system at the same place, its quasi-velocities in a direction of which the kinetic energy is a sphere.
-fn directed<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    first: &StartPlace<N>,
+fn directed(
+    system: &Built<'_>,
+    first: &StartPlace,
     i: u64,
-) -> Option<StartPlace<N>> {
+) -> Option<StartPlace> {
     let (n, m) = system.own();
     let count = n - m;
     let next = sequence(count);
@@ -80,13 +81,13 @@ fn directed<const N: usize, const M: usize>(
         })
         .collect();
     let q = &first.0;
-    let energy = |xi: &[f64; N]| Some(system.energy(0.0, q, &system.velocity_of(0.0, q, xi).ok()?));
-    let rest = energy(&[0.0; N])?;
-    let unit = |k: usize, sign: f64| std::array::from_fn(|j| if j == k { sign } else { 0.0 });
-    let mut xi = [0.0; N];
+    let energy = |xi: &[f64]| Some(system.energy(0.0, q, &system.velocity_of(0.0, q, xi).ok()?));
+    let mut xi = vec![0.0; q.len()];
+    let rest = energy(&xi)?;
+    let unit = |k: usize, sign: f64| -> Vec<f64> { (0..q.len()).map(|j| if j == k { sign } else { 0.0 }).collect() };
     for (k, part) in direction.iter().enumerate() {
         let twice = energy(&unit(k, 1.0))? + energy(&unit(k, -1.0))? - 2.0 * rest;
         xi[k] = if twice > 0.0 { part / twice.sqrt() } else { 0.0 };
     }
-    Some((*q, system.velocity_of(0.0, q, &xi).ok()?))
+    Some((q.clone(), system.velocity_of(0.0, q, &xi).ok()?))
 }

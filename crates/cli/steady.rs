@@ -17,7 +17,7 @@ pub(crate) struct SteadyMotion {
 const COORDINATES: [&str; 4] = ["x", "y", "heading", "rotor"];
 
 /// A steady motion of a system, in the words of its scene.
-pub(crate) fn motion<const N: usize, const M: usize>(system: &Built<'_, N, M>, e: &Equilibrium<N>) -> SteadyMotion {
+pub(crate) fn motion(system: &Built<'_>, e: &Equilibrium) -> SteadyMotion {
     match system {
         Built::Sleigh(sleigh) => of_sleigh(*sleigh, e),
         Built::Text(text) => of_text(text.model().coordinates(), e),
@@ -28,7 +28,7 @@ fn fields<const K: usize>(fields: [(&str, Value); K]) -> Map<String, Value> {
     fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
-fn of_sleigh<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, e: &Equilibrium<N>) -> SteadyMotion {
+fn of_sleigh(system: &dyn SceneSystem, e: &Equilibrium) -> SteadyMotion {
     let SleighState { x, y, heading, speed, turn_rate } = system.sleigh_state(&e.q, &e.v);
     let rotor_rate = system.rotor(&e.q, &e.v).map(|[_, rate]| rate);
     let depends_on: Vec<&str> = e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect();
@@ -53,8 +53,8 @@ fn of_sleigh<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, e: 
 }
 
 /// Its rates by their names, and the coordinates on which the equations depend, with their values.
-fn of_text<const N: usize>(coordinates: &[Coordinate], e: &Equilibrium<N>) -> SteadyMotion {
-    let rates: Vec<_> = coordinates.iter().zip(e.v).map(|(of, rate)| (format!("{}'", of.name), rate)).collect();
+fn of_text(coordinates: &[Coordinate], e: &Equilibrium) -> SteadyMotion {
+    let rates: Vec<_> = coordinates.iter().zip(&e.v).map(|(of, rate)| (format!("{}'", of.name), rate)).collect();
     let place = e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
     let place: Vec<(String, f64)> = place.collect();
     let object =

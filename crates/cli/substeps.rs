@@ -5,7 +5,7 @@ use harness::{Record, SubstepSummary};
 use serde_json::{Value, json};
 
 /// Adds to the object of a run what became of its divided steps, or to the hint of its failure that there is such a thing.
-pub(crate) fn add_json<const N: usize>(object: &mut Value, record: &Record<N>) {
+pub(crate) fn add_json(object: &mut Value, record: &Record) {
     if let Some(SubstepSummary { divided, parts, most, undivided }) = &record.substeps {
         object["substeps"] = json!({"divided": divided, "parts": parts, "most": most});
         if let Some(why) = undivided {
@@ -18,7 +18,7 @@ pub(crate) fn add_json<const N: usize>(object: &mut Value, record: &Record<N>) {
 }
 
 /// One line for a person; none of a run whose steps might not be divided.
-pub(crate) fn told<const N: usize>(record: &Record<N>) -> String {
+pub(crate) fn told(record: &Record) -> String {
     let Some(SubstepSummary { divided, parts, most, .. }) = record.substeps else { return String::new() };
     let told = match divided {
         0 => format!("none of {} steps was divided", record.steps),
@@ -28,7 +28,7 @@ pub(crate) fn told<const N: usize>(record: &Record<N>) -> String {
 }
 
 /// The failure of a run, with what its parts came to, or with the offer to make them.
-pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
+pub(crate) fn failure(record: &Record) -> Option<String> {
     let failure = table::failure(record)?;
     let more = match &record.substeps {
         Some(SubstepSummary { undivided: Some(why), .. }) => format!(
@@ -41,7 +41,7 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
 }
 
 /// What may be done about a step that is too long, where it has not been tried.
-fn offer<const N: usize>(record: &Record<N>) -> Option<&'static str> {
+fn offer(record: &Record) -> Option<&'static str> {
     let failed = record.failure.as_ref().filter(|_| record.substeps.is_none())?;
     failed.source.may_hold_in_parts().then_some("divide such steps into parts (--substep)")
 }

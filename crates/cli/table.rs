@@ -58,7 +58,7 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 /// A row of a comparison; of a method that refuses the scene or failed, a short one, whose last cell says why, and at which step.
-pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
+pub(crate) fn cells(record: &Record, error: Option<f64>) -> Vec<String> {
     if let Some(reason) = record.refusal() {
         return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("refused: {reason}")];
     }
@@ -92,7 +92,7 @@ fn over_steps(most: f64) -> String {
 }
 
 /// The methods that a method overtakes in a longer run, where there are any.
-pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)]) -> Option<String> {
+pub(crate) fn better(record: &Record, better: &[(&str, f64)]) -> Option<String> {
     let overtaken: Vec<String> = better.iter().map(|(name, from)| format!("{name} from {from:.1e} s")).collect();
     let name = record.method.name;
     (!overtaken.is_empty()).then(|| format!("{name} has a smaller energy error than {}", overtaken.join(", ")))
@@ -197,9 +197,9 @@ pub(crate) fn end_of_sleigh(end: &SleighState) -> Vec<(String, String)> {
 }
 
 /// The result of one run of a scene of that title and name, with lines on where it ends.
-pub(crate) fn one_run_of<const N: usize>(
+pub(crate) fn one_run_of(
     (title, name): (&str, &str),
-    record: &Record<N>,
+    record: &Record,
     end: &[(String, String)],
     out: Option<&Path>,
 ) -> String {
@@ -229,7 +229,7 @@ pub(crate) fn one_run_of<const N: usize>(
 }
 
 /// How long the equations took to derive, where a person notices; none of others.
-pub(crate) fn derivation<const N: usize>(record: &Record<N>) -> String {
+pub(crate) fn derivation(record: &Record) -> String {
     const NOTICED: f64 = 0.1;
     let seconds = record.derivation_seconds;
     if seconds < NOTICED {
@@ -265,7 +265,7 @@ pub(crate) fn realigned(text: &str) -> String {
 }
 
 /// What is wrong with a run that reached its end with a place, a velocity or an energy that is not a finite number.
-pub(crate) fn not_finite<const N: usize>(record: &Record<N>) -> Option<String> {
+pub(crate) fn not_finite(record: &Record) -> Option<String> {
     let energies = [record.energy.last, record.energy.work, record.energy.max_error];
     let finite = record.q.iter().chain(&record.v).chain(&energies).all(|number| number.is_finite());
     (!finite && record.failure.is_none()).then(|| {
@@ -274,7 +274,7 @@ pub(crate) fn not_finite<const N: usize>(record: &Record<N>) -> Option<String> {
 }
 
 /// The failure of a run, told with how far the run is valid.
-pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
+pub(crate) fn failure(record: &Record) -> Option<String> {
     if let Some(reason) = record.refusal() {
         return Some(format!("{} refused: {reason}", record.method.name));
     }

@@ -99,9 +99,9 @@ impl Trigger {
     ///
     /// # Errors
     /// [`CliError::Request`] where the system has no such quantity.
-    pub(crate) fn on<const N: usize, const M: usize>(
+    pub(crate) fn on(
         &self,
-        system: &Built<'_, N, M>,
+        system: &Built<'_>,
     ) -> Result<WatchedTriggers<'_, Coordinate>, CliError> {
         let find = |name: &str| Coordinate::of(system, name).ok().map(|found| (found.clone(), found.quantity.angle));
         self.find(find, || system.quantities())
@@ -128,13 +128,12 @@ impl<Q> WatchedTriggers<'_, Q> {
 
 impl WatchedTriggers<'_, Coordinate> {
     /// The event in a system.
-    pub(crate) fn event<'a, const N: usize, const M: usize>(&'a self, system: &'a Built<'a, N, M>) -> Event<'a, N> {
-        let of = move |t, q: &[f64; N], v: &[f64; N]| self.function.of(self.quantity.value(system, t, q, v));
-        let event = Event::new(self.trigger.text.clone(), move |t, state| of(t, &state.unwrapped(), state.v()));
+    pub(crate) fn event<'a>(&'a self, system: &'a Built<'a>) -> Event<'a> {
+        let of = move |t, q: &[f64], v: &[f64]| self.function.of(self.quantity.value(system, t, q, v));
+        let event = Event::new(self.trigger.text.clone(), of);
         let Some(wanted) = self.trigger.rising else { return event };
-        event.where_true(move |t, state, rising| {
-            let number = self.quantity.value(system, t, &state.unwrapped(), state.v());
-            self.function.rises(number, rising) == wanted
+        event.where_true(move |t, q, v, rising| {
+            self.function.rises(self.quantity.value(system, t, q, v), rising) == wanted
         })
     }
 }
@@ -166,10 +165,10 @@ pub(crate) struct Happened<'a> {
 
 impl<'a> Happened<'a> {
     /// In a system.
-    pub(crate) fn of<const N: usize, const M: usize>(
-        system: &Built<'_, N, M>,
+    pub(crate) fn of(
+        system: &Built<'_>,
         watched: &[WatchedTriggers<'a, Coordinate>],
-        crossing: &SavedCrossing<N>,
+        crossing: &SavedCrossing,
     ) -> Option<Self> {
         let SavedCrossing { event, t, within, spacing, rising, q, v } = crossing;
         let WatchedTriggers { trigger, quantity, function } = watched.get(*event)?;

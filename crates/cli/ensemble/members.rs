@@ -27,15 +27,8 @@ pub(super) struct Summed {
 /// The quantities that tell a state.
 struct MemberNames;
 
-impl Visitor for MemberNames {
-    type Output = Vec<Quantity>;
-
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: Built<'_, N, M>,
-        _q: [f64; N],
-        _v: [f64; N],
-    ) -> Self::Output {
+impl MemberNames {
+    fn on(self, system: &Built<'_>, (_q, _v): (&[f64], &[f64])) -> Vec<Quantity> {
         let mut state = system.quantities();
         state.truncate(system.in_state());
         state
@@ -208,13 +201,11 @@ struct Alone<'a> {
     every: u64,
 }
 
-impl Visitor for Alone<'_> {
-    type Output = (Option<Summary<Vec<f64>>>, Option<String>);
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Alone<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> (Option<Summary<Vec<f64>>>, Option<String>) {
         let count = system.in_state();
         let of =
-            |t: f64, q: &[f64; N], v: &[f64; N]| (0..count).map(|k| system.value(k, t, q, v)).collect::<Vec<f64>>();
+            |t: f64, q: &[f64], v: &[f64]| (0..count).map(|k| system.value(k, t, q, v)).collect::<Vec<f64>>();
         let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
         let (summary, failure) = summarise(&system, self.method, (q, v), &watching);
         (summary, failure.map(|failure| failure.to_string()))
@@ -226,10 +217,8 @@ struct Exponent<'a> {
     schedule: Schedule,
 }
 
-impl Visitor for Exponent<'_> {
-    type Output = Result<f64, String>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Exponent<'_> {
+    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<f64, String> {
         let settle = self.schedule.steps / 10;
         let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
         let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };

@@ -1,25 +1,12 @@
 use crate::table::{counted, number};
-use dla::{State, View};
-use scene::{Built, Interpolation, PathShape, PathSpec, Scene, SceneEffect, TimeSpec, TrailersSpec, Visitor};
+use scene::{Interpolation,  PathShape, PathSpec, Scene, SceneEffect, Started, TimeSpec, TrailersSpec};
 use sleigh::{SleighError, SleighState};
-
-/// The state that a scene starts in, and its energy (J).
-struct Begins;
-
-impl Visitor for Begins {
-    type Output = Option<(SleighState, f64)>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let first = system.sleigh()?.scene_piece(0.0);
-        let state = State::new(q, v, system.angles());
-        let energy = View { system: &*first, k: 0, t: 0.0, state: &state }.energy();
-        Some((first.sleigh_state(state.q(), state.v()), energy))
-    }
-}
 
 /// The facts of a scene, with the state that it starts in.
 pub(crate) fn of(scene: &Scene) -> Result<Vec<(String, String)>, SleighError> {
-    let (start, energy) = scene.visit(Begins)?.unwrap_or((scene.start, f64::NAN));
+    let Started { system, q, v } = scene.system()?;
+    let first = system.scene_piece(0.0);
+    let (start, energy) = (first.sleigh_state(&q, &v), first.mechanism().energy(0.0, &q, &v));
     let imposed = scene.effects.iter().map(SceneEffect::kind).find(|kind| matches!(*kind, "servo" | "tracer"));
     let imposed = imposed.map_or_else(String::new, |kind| format!(", as the {kind} imposes it"));
     Ok(listed(scene, &start, energy, &imposed))
