@@ -41,10 +41,10 @@ mod train;
 mod variation;
 mod written;
 
-pub use self::built::{Built, QUANTITIES, Quantity, SleighQuantity, StartPlace, text_quantities};
+pub use self::built::{Built, BuiltScene, QUANTITIES, Quantity, SleighQuantity, StartPlace, text_quantities};
 pub use self::scene::Scene;
 pub use self::text::{AnyScene, BuildError, Given, TextScene};
-pub use ::text::{AnyText, Coordinate, FREE, Family, FamilySystem, Moved, TextMechanics, TextModel, Varied};
+pub use ::text::{Coordinate, FREE, Family, Moved, TextMechanics, TextModel, Varied};
 pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
 pub use effects::{
     EFFECTS, EffectInfo, HillSpec, Interpolation, PathShape, PathSpec, SceneEffect, TimeSpec, TrailersSpec,
@@ -56,9 +56,8 @@ pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
 pub use settings::{Setting, with_settings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
-pub use system::{Visitor, in_lanes};
+pub use system::in_lanes;
 pub use systems::{
-    AnyEffect, AnySystem, Column, EffectList, EffectPower, LANES, LaneMethod, PARAMETERS, SceneBody, SceneEffects,
-    SceneSystem, SleighFamily, Started,
+    AnyEffect, Column, EffectList, EffectPower, LANES, LaneMethod, PARAMETERS, SceneSystem, SleighFamily, Started,
 };
 pub use train::TrainError;

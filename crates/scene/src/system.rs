@@ -1,100 +1,44 @@
-use crate::{Built, Scene, SceneEffect};
+use crate::{BuiltScene, Scene, SceneEffect};
 use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
-use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SleighFamily, Started};
-
-/// What is to be done with the system of a scene, whatever its shape.
-pub trait Visitor {
-    /// What comes of it.
-    type Output;
-
-    /// Receives the system and its start.
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output;
-}
-
-/// Hands a system to a visitor.
-pub(crate) fn handed<V: Visitor>(system: AnySystem, visitor: V) -> V::Output {
-    match system {
-        AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
-        AnySystem::One(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
-        AnySystem::Two(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
-        AnySystem::Rotor(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
-        AnySystem::RotorOne(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
-        AnySystem::RotorTwo(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
-    }
-}
-
-/// The jumps of a system up to a time (s).
-struct Jumps(f64);
-
-impl Visitor for Jumps {
-    type Output = Vec<f64>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, _q: [f64; N], _v: [f64; N]) -> Vec<f64> {
-        system.jump_times(0.0, self.0)
-    }
-}
-
-/// The energy of a system at its start (J).
-struct TrainEnergy;
-
-impl Visitor for TrainEnergy {
-    type Output = f64;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> f64 {
-        system.smooth_piece(0.0).energy(0.0, &q, &v)
-    }
-}
+use systems::{AnyEffect, Guiding, Lane, LaneMethod, LaneRun, Rotor, SleighFamily, Started};
 
 impl Scene {
-    /// Builds the system of the scene and hands it to the visitor.
+    /// The system of the scene, with its start.
     ///
     /// # Errors
     /// As [`system`](Self::system).
-    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
-        Ok(handed(self.system()?, visitor))
+    pub fn built(&self) -> Result<BuiltScene, SleighError> {
+        self.system().map(BuiltScene::of_sleigh)
     }
 
-    /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
-    ///
-    /// # Errors
-    /// As [`visit`](Self::visit).
-    pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
-        Ok(match self.system()? {
-            AnySystem::Sleigh(Started { system, q, v }) => Some(visitor.visit(Built::Sleigh(&*system), q, v)),
-            AnySystem::Rotor(Started { system, q, v }) => Some(visitor.visit(Built::Sleigh(&*system), q, v)),
-            _ => None,
-        })
-    }
-
-    /// The system of the scene.
+    /// The same as the system of a sleigh.
     ///
     /// # Errors
     /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not; or of a train, which
     /// [`train`](Self::train) makes.
-    pub fn system(&self) -> Result<AnySystem, SleighError> {
+    pub fn system(&self) -> Result<Started, SleighError> {
         if self.has_trailers() {
             return Err(SleighError::Train);
         }
         self.first_blade()
     }
 
-    /// The sleigh as a function of its parameters, with `N` coordinates; `None` where it has another number of them, and of a scene that
-    /// imposes velocities.
+    /// The sleigh as a function of its parameters; `None` of a scene that imposes velocities, or whose plane turns.
     ///
     /// # Errors
     /// As [`system`](Self::system).
-    pub fn family<const N: usize>(&self) -> Result<Option<SleighFamily<N>>, SleighError> {
+    pub fn family(&self) -> Result<Option<SleighFamily>, SleighError> {
         if self.imposed()?.is_some() || self.table_rate().is_some() {
             return Ok(None);
         }
         let acting = (&self.acting()?[..], &self.masses()?[..]);
-        Ok(SleighFamily::new(self.sleigh, self.rotor()?, acting, 0.5 * self.run.duration))
+        Ok(Some(SleighFamily::new(self.sleigh, self.rotor()?, acting, 0.5 * self.run.duration)))
     }
 
     /// The same of the first blade alone, where others follow it.
-    pub(crate) fn first_blade(&self) -> Result<AnySystem, SleighError> {
+    pub(crate) fn first_blade(&self) -> Result<Started, SleighError> {
         systems::system(self.guiding()?, self.rotor()?, self.acting()?, &self.start)
     }
 
@@ -113,7 +57,8 @@ impl Scene {
     /// # Errors
     /// As [`system`](Self::system).
     pub(crate) fn energy(&self) -> Result<f64, SleighError> {
-        Ok(handed(self.first_blade()?, TrainEnergy))
+        let Started { system, q, v } = self.first_blade()?;
+        Ok(system.mechanism().smooth_piece(0.0).energy(0.0, &q, &v))
     }
 
     /// The jumps of the scene in its run (s).
@@ -121,7 +66,7 @@ impl Scene {
     /// # Errors
     /// [`SleighError`] where there is no such sleigh.
     pub fn jumps(&self) -> Result<Vec<f64>, SleighError> {
-        Ok(handed(self.first_blade()?, Jumps(self.run.duration)))
+        Ok(self.first_blade()?.system.mechanism().jump_times(0.0, self.run.duration))
     }
 
     pub(crate) fn rotor(&self) -> Result<Option<Rotor>, SleighError> {

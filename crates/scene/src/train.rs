@@ -1,8 +1,8 @@
-use crate::system::handed;
-use crate::{Built, Scene, SceneEffect, TrailersSpec, Visitor};
+use crate::{Scene, SceneEffect, TrailersSpec};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};
 use sleigh::{Guided, SleighError, SleighState};
+use systems::Started;
 use thiserror::Error;
 
 /// Why a scene makes no train, which one read from a file does.
@@ -54,17 +54,10 @@ impl Scene {
 
     /// The start of the first blade, with the velocities that the scene imposes in place of those that it gives.
     fn admissible_start(&self) -> Result<SleighState, SleighError> {
-        Ok(if self.imposed()?.is_some() { handed(self.first_blade()?, TrainStart) } else { self.start })
-    }
-}
-
-/// The state of a sleigh at its start.
-struct TrainStart;
-
-impl Visitor for TrainStart {
-    type Output = SleighState;
-
-    fn visit<const N: usize, const M: usize>(self, _system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> SleighState {
-        SleighState::from_coordinates(&[q[0], q[1], q[2]], &[v[0], v[1], v[2]])
+        if self.imposed()?.is_none() {
+            return Ok(self.start);
+        }
+        let Started { system, q, v } = self.first_blade()?;
+        Ok(system.sleigh_state(&q, &v))
     }
 }

@@ -1,4 +1,4 @@
-use crate::SceneSystem;
+use crate::{EffectPower, SceneSystem};
 use dla::Node;
 use sleigh::SleighState;
 
@@ -41,15 +41,11 @@ const SLEIGH: [(&str, &str); 11] = [
 ];
 
 /// The columns of a sleigh: what a scene does not have has no column.
-pub(crate) fn of_sleigh<S, const N: usize, const M: usize>(system: &S, node: &Node<N, M>) -> Vec<Column>
-where
-    S: SceneSystem<N, M> + ?Sized,
-{
+pub(crate) fn of_sleigh(rotor: bool, powers: &[EffectPower]) -> Vec<Column> {
     let mut columns: Vec<_> = SLEIGH.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
-    if system.rotor(&node.q, &node.v).is_some() {
+    if rotor {
         columns.extend([Column::new("rotor_angle", "rad"), Column::new("rotor_rate", "rad/s")]);
     }
-    let powers = system.powers(node.t, &node.q, &node.v, &[0.0; M]);
     if !powers.is_empty() {
         columns.push(Column::new("work", "J"));
     }
@@ -57,22 +53,18 @@ where
     columns
 }
 
-/// The numbers of a node in these columns.
-pub(crate) fn row_of_sleigh<S, const N: usize, const M: usize>(system: &S, node: &Node<N, M>) -> Vec<f64>
-where
-    S: SceneSystem<N, M> + ?Sized,
-{
-    // The numbers of a node are those of the smooth piece that begins there.
-    let piece = system.scene_piece(node.t);
-    let SleighState { x, y, heading, speed, turn_rate } = piece.sleigh_state(&node.q, &node.v);
-    let [center_x, center_y] = piece.centre(&node.q);
-    let lambda = piece.motion(node.t, &node.q, &node.v).map_or([f64::NAN; M], |motion| motion.multiplier);
+/// The numbers of a node in these columns, of the smooth piece that holds there.
+pub(crate) fn row_of_sleigh(piece: &dyn SceneSystem, node: &Node) -> Vec<f64> {
+    let Node { t, q, v, energy, constraint, .. } = node;
+    let SleighState { x, y, heading, speed, turn_rate } = piece.sleigh_state(q, v);
+    let [center_x, center_y] = piece.centre(q);
+    let lambda = piece.mechanism().motion(*t, q, v).map_or_else(|_| Vec::new(), |[_, lambda]| lambda);
     // The first constraint is that of the blade.
-    let force = lambda.first().copied().unwrap_or(0.0);
+    let force = lambda.first().copied().unwrap_or(f64::NAN);
     let mut row = Vec::with_capacity(SLEIGH.len() + 4);
-    row.extend([node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force, center_x, center_y]);
-    row.extend(piece.rotor(&node.q, &node.v).into_iter().flatten());
-    let powers = piece.powers(node.t, &node.q, &node.v, &lambda);
+    row.extend([*t, x, y, heading, speed, turn_rate, *energy, *constraint, force, center_x, center_y]);
+    row.extend(piece.rotor(q, v).into_iter().flatten());
+    let powers = piece.powers(*t, q, v, &lambda);
     if !powers.is_empty() {
         row.push(node.work);
     }

@@ -1,4 +1,5 @@
 use crate::{AnyEffect, Rotor};
+use dla::ParametrisedMechanics;
 use lagrangian::{
     AdmissibleBasis, Constraint, Effect, Gradients, Parametrised, Piecewise, Scalar, Seeded, SeededMember,
 };
@@ -11,9 +12,10 @@ pub const PARAMETERS: [&str; 3] = ["sleigh.mass", "sleigh.inertia", "sleigh.offs
 /// Numbers carry so many directions.
 const ROOM: usize = 8;
 
-/// A sleigh on which no velocity is imposed, with its effects, as a function of [`PARAMETERS`]: three coordinates, or four with a rotor.
+/// A sleigh on which no velocity is imposed, with its effects, as a function of [`PARAMETERS`]: three coordinates, or four with a rotor, and
+/// one constraint. [`SceneSystem::member`](crate::SceneSystem::member) asks for no other shape.
 #[derive(Debug, Clone)]
-pub struct SleighFamily<const N: usize> {
+pub struct SleighFamily {
     /// With its own mass and offset.
     sleigh: Sleigh,
     /// Inertia (kg m^2) and torque of the motor.
@@ -23,40 +25,38 @@ pub struct SleighFamily<const N: usize> {
     masses: Vec<MovingMass>,
 }
 
-impl<const N: usize> SleighFamily<N> {
-    /// The family of a sleigh that carries masses, with the smooth piece of what acts on it that holds at the time `t` (s); `None` where
-    /// `N` is neither three, nor four with a rotor.
+impl SleighFamily {
+    /// The family of a sleigh that carries masses, with the smooth piece of what acts on it that holds at the time `t` (s).
     #[must_use]
-    pub fn new(
-        sleigh: Sleigh,
-        rotor: Option<Rotor>,
-        (effects, masses): (&[AnyEffect], &[MovingMass]),
-        t: f64,
-    ) -> Option<Self> {
+    pub fn new(sleigh: Sleigh, rotor: Option<Rotor>, (effects, masses): (&[AnyEffect], &[MovingMass]), t: f64) -> Self {
         let rotor = rotor.map(|rotor| (rotor.inertia, rotor.torque.map(|torque| torque.piece(t))));
-        let coordinates = if rotor.is_some() { 4 } else { 3 };
         let effects = effects.iter().map(|effect| effect.piece(t)).collect();
         let masses = masses.iter().map(|mass| mass.piece(t)).collect();
-        (N == coordinates).then_some(Self { sleigh, rotor, effects, masses })
+        Self { sleigh, rotor, effects, masses }
+    }
+
+    /// How many coordinates it has.
+    pub(crate) fn coordinates(&self) -> usize {
+        if self.rotor.is_some() { 4 } else { 3 }
     }
 
     /// The values of the parameters, zeros after them.
-    #[must_use]
-    pub fn values(&self) -> [f64; ROOM] {
+    pub(crate) fn values(&self) -> [f64; ROOM] {
         let own = [self.sleigh.mass(), self.sleigh.inertia(), self.sleigh.offset()];
         std::array::from_fn(|k| own.get(k).copied().unwrap_or(0.0))
-    }
-
-    /// The system at values of the parameters that may carry derivatives.
-    #[must_use]
-    pub fn at(&self, p: &[Seeded; ROOM]) -> Box<dyn Gradients<N, 1> + '_> {
-        Box::new(SeededMember { family: self, parameters: *p })
     }
 
     /// What an effect adds to the Lagrangian.
     ///
     /// The ground acts at the centre of mass alone: another offset is another place. A slope draws the mass.
-    fn added<S: Scalar>(&self, effect: &AnyEffect, p: &[S; ROOM], t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
+    fn added<S: Scalar, const N: usize>(
+        &self,
+        effect: &AnyEffect,
+        p: &[S; ROOM],
+        t: S,
+        q: &[S; N],
+        v: &[S; N],
+    ) -> Option<S> {
         if !effect.is_ground() {
             return effect.lagrangian(&self.sleigh, t, q, v);
         }
@@ -70,7 +70,14 @@ impl<const N: usize> SleighFamily<N> {
     }
 }
 
-impl<const N: usize> Parametrised<N, 1, ROOM> for SleighFamily<N> {
+/// Its basis holds everywhere.
+impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, ROOM> for SleighFamily {
+    fn at(&self, _basis: u64, p: &[Seeded; ROOM]) -> Box<dyn Gradients<N, M> + '_> {
+        Box::new(SeededMember { family: self, parameters: *p })
+    }
+}
+
+impl<const N: usize, const M: usize> Parametrised<N, M, ROOM> for SleighFamily {
     /// That of the sleigh, its rotor and its effects.
     fn lagrangian<S: Scalar>(&self, p: &[S; ROOM], t: S, q: &[S; N], v: &[S; N]) -> S {
         let (sin, cos) = q[2].sin_cos();
@@ -94,11 +101,11 @@ impl<const N: usize> Parametrised<N, 1, ROOM> for SleighFamily<N> {
         sum
     }
 
-    fn constraint<S: Scalar>(&self, _p: &[S; ROOM], _t: S, q: &[S; N]) -> Constraint<S, N, 1> {
+    fn constraint<S: Scalar>(&self, _p: &[S; ROOM], _t: S, q: &[S; N]) -> Constraint<S, N, M> {
         let (sin, cos) = q[2].sin_cos();
         let mut row = [S::zero(); N];
         (row[0], row[1]) = (-sin, cos);
-        ([row], [S::zero()])
+        ([row; M], [S::zero(); M])
     }
 
     fn force<S: Scalar>(&self, _p: &[S; ROOM], t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
@@ -115,7 +122,7 @@ impl<const N: usize> Parametrised<N, 1, ROOM> for SleighFamily<N> {
     }
 
     /// Drive along the blade, pivot about it with the rotor at rest in space, and the spin of the rotor.
-    fn admissible_basis<S: Scalar>(&self, _p: &[S; ROOM], _t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, 1>> {
+    fn admissible_basis<S: Scalar>(&self, _p: &[S; ROOM], _t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
         let (sin, cos) = q[2].sin_cos();
         Some(AdmissibleBasis::from_fn(|k| {
             let mut vector = [S::zero(); N];

@@ -1,15 +1,15 @@
-//! The systems of scenes: a sleigh with what guides it, its rotor and its effects, as objects of six shapes.
+//! The systems of scenes: a sleigh with what guides it, its rotor and its effects, as objects whose sizes are known at run time.
 //!
 //! They are compiled here, once, so that whoever has a scene has an object to ask, and compiles no system.
 //!
 //! ```
 //! use sleigh::{Sleigh, SleighState, effects::Bowl};
-//! use systems::{AnyEffect, AnySystem, Guiding, system};
+//! use systems::{AnyEffect, Guiding, system};
 //!
 //! let sleigh = Sleigh::new(1.0, 1.0, 0.5)?;
 //! let bowl = AnyEffect::Bowl(Bowl::new([0.1, 0.1], [0.0, 0.0])?);
 //! let start = SleighState { x: 0.0, y: 0.0, heading: 0.0, speed: -1.0, turn_rate: 0.1 };
-//! let AnySystem::Sleigh(started) = system(Guiding::None(sleigh), None, vec![bowl], &start)? else { unreachable!() };
+//! let started = system(Guiding::None(sleigh), None, vec![bowl], &start)?;
 //! assert_eq!(started.v, [-1.0, 0.0, 0.1]);
 //! # Ok::<(), sleigh::SleighError>(())
 //! ```
@@ -28,6 +28,6 @@ pub use columns::Column;
 pub use effect_list::EffectList;
 pub use family::{PARAMETERS, SleighFamily};
 pub use lanes::{LANES, Lane, LaneMethod, LaneRun, in_lanes};
-pub use power::{EffectPower, SceneBody, SceneEffects};
-pub use system::{AnySystem, Guiding, Rotor, SceneSystem, Started, system};
+pub use power::EffectPower;
+pub use system::{Guiding, Rotor, SceneSystem, Started, system};
 pub use train::train;

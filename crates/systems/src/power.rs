@@ -17,7 +17,7 @@ pub struct EffectPower {
 }
 
 /// The list of effects of a scene, none or some.
-pub trait SceneEffects<B, const N: usize>: Effect<B, N> + PushInOwnAxes<B> {
+pub(crate) trait SceneEffects<B, const N: usize>: Effect<B, N> + PushInOwnAxes<B> {
     /// The power of each effect that has any.
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower>;
 }
@@ -71,7 +71,7 @@ fn numbered(kind: &str, number: usize) -> String {
 }
 
 /// A body of a scene: a sleigh, perhaps with a rotor, perhaps guided.
-pub trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
+pub(crate) trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
     /// The power of what drives the body's own coordinates and constraints; `lambda` are the multipliers there.
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
 

@@ -1,111 +1,141 @@
 use crate::power::{self, SceneBody, SceneEffects};
-use crate::{AnyEffect, Column, EffectList, EffectPower, columns};
-use dla::{FullMechanics, Node, Stepper};
+use crate::{AnyEffect, Column, EffectList, EffectPower, SleighFamily, columns};
+use dla::{Mechanism, Member, Node, OwnMethods, ParametrisedMechanism, Stepper, Subject};
 use lagrangian::{Piecewise, System, With};
 use sleigh::closed::ClosedForm;
 use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
 
 /// A system that answers in the words of a scene.
-pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Sync {
+///
+/// Configurations, velocities and multipliers are lists as long as its mechanism has coordinates and constraints; what a list lacks counts
+/// as not a number.
+pub trait SceneSystem: Send + Sync {
+    /// The system for runs, with its own integrators: a closed form where it is a sleigh, free or with forces, or has a rotor on a free
+    /// bearing, and a series where it is a sleigh that is free, in a round well, or under a constant thrust or torque.
+    fn mechanism(&self) -> Box<dyn Mechanism + '_>;
+
+    /// The same as the member of a family; none where the family has another number of coordinates, or velocities are imposed.
+    fn member<'a>(&'a self, family: &'a SleighFamily) -> Option<Box<dyn ParametrisedMechanism + 'a>>;
+
     /// Place, heading and admissible velocities of the sleigh.
-    fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState;
+    fn sleigh_state(&self, q: &[f64], v: &[f64]) -> SleighState;
 
     /// The centre of mass (m).
-    fn centre(&self, q: &[f64; N]) -> [f64; 2];
+    fn centre(&self, q: &[f64]) -> [f64; 2];
 
     /// Angle relative to the body (rad) and relative rate (rad/s) of the rotor, where there is one.
-    fn rotor(&self, q: &[f64; N], v: &[f64; N]) -> Option<[f64; 2]> {
-        (N == 4).then(|| [q[N - 1], v[N - 1]])
-    }
+    fn rotor(&self, q: &[f64], v: &[f64]) -> Option<[f64; 2]>;
 
     /// The power of each effect that has any, where the constraints have the multipliers `lambda`.
-    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
+    fn powers(&self, t: f64, q: &[f64], v: &[f64], lambda: &[f64]) -> Vec<EffectPower>;
 
     /// The smooth piece that holds at the time `t` (s), continued to all times.
-    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_>;
+    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem + '_>;
 
     /// The columns of a trajectory that begins at this node.
-    fn columns(&self, first: &Node<N, M>) -> Vec<Column> {
-        columns::of_sleigh(self, first)
+    fn columns(&self, first: &Node) -> Vec<Column> {
+        let rotor = self.rotor(&first.q, &first.v).is_some();
+        // Of powers the names are asked for.
+        columns::of_sleigh(rotor, &self.powers(first.t, &first.q, &first.v, &[]))
     }
 
     /// The numbers of a node, one for each of the [`columns`](Self::columns).
-    fn row(&self, node: &Node<N, M>) -> Vec<f64> {
-        columns::row_of_sleigh(self, node)
+    fn row(&self, node: &Node) -> Vec<f64> {
+        // They are those of the smooth piece that begins there.
+        columns::row_of_sleigh(&*self.scene_piece(node.t), node)
     }
 
-    /// As [`closed_map`](dla::OwnMethods::closed_map): where the system is a sleigh, free or with forces, or has a rotor on a free bearing.
-    fn closed_map<'a>(&'a self, _t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
-        general
-    }
-
-    /// As [`series`](dla::OwnMethods::series): where the system is a sleigh that is free, in a round well, or under a constant thrust or torque.
-    fn series(&self, _t: f64, _tolerance: f64) -> Option<Stepper<'_, N, M>> {
-        None
+    /// Whether velocities are imposed: the blade is not the only constraint.
+    fn imposes_velocities(&self) -> bool {
+        self.mechanism().size().m > 1
     }
 }
 
-impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
+/// A system of a shape: three coordinates or four, with a rotor; one constraint, the blade, or more, where velocities are imposed.
+struct Shaped<S, const N: usize, const M: usize>(S);
+
+impl<B, E, const N: usize, const M: usize> Shaped<With<B, E>, N, M>
 where
-    Self: System<N, M> + Piecewise + Sync,
+    Self: OwnMethods<N, M>,
+    With<B, E>: System<N, M> + Piecewise,
+{
+    fn subject(&self) -> Subject<'_, N, M> {
+        Subject::new(&self.0, self)
+    }
+}
+
+impl<B, E, const N: usize, const M: usize> SceneSystem for Shaped<With<B, E>, N, M>
+where
+    With<B, E>: System<N, M> + Piecewise + Send + Sync,
     B: SceneBody<N, M>,
     E: SceneEffects<B, N>,
 {
-    fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState {
-        SleighState::from_coordinates(&[q[0], q[1], q[2]], &[v[0], v[1], v[2]])
+    fn mechanism(&self) -> Box<dyn Mechanism + '_> {
+        Box::new(self.subject())
     }
 
-    fn centre(&self, q: &[f64; N]) -> [f64; 2] {
-        self.body.centre(q)
+    fn member<'a>(&'a self, family: &'a SleighFamily) -> Option<Box<dyn ParametrisedMechanism + 'a>> {
+        // Other shapes cost no code.
+        if const { M > 1 } {
+            return None;
+        }
+        let member = Member::new(self.subject(), family, family.values());
+        if family.coordinates() == N { Some(Box::new(member)) } else { None }
     }
 
-    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower> {
-        power::of(self, t, q, v, lambda)
+    fn sleigh_state(&self, q: &[f64], v: &[f64]) -> SleighState {
+        SleighState::from_coordinates(&row(q), &row(v))
     }
 
-    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_> {
-        Box::new(self.piece(t))
+    fn centre(&self, q: &[f64]) -> [f64; 2] {
+        self.0.body.centre(&row::<N>(q))
     }
 
+    fn rotor(&self, q: &[f64], v: &[f64]) -> Option<[f64; 2]> {
+        (N == 4).then(|| [row::<N>(q)[N - 1], row::<N>(v)[N - 1]])
+    }
+
+    fn powers(&self, t: f64, q: &[f64], v: &[f64], lambda: &[f64]) -> Vec<EffectPower> {
+        power::of::<_, _, N, M>(&self.0, t, &row(q), &row(v), &row(lambda))
+    }
+
+    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem + '_> {
+        Box::new(Shaped::<_, N, M>(self.0.piece(t)))
+    }
+}
+
+impl<B, E, const N: usize, const M: usize> OwnMethods<N, M> for Shaped<With<B, E>, N, M>
+where
+    With<B, E>: System<N, M> + Piecewise,
+    B: SceneBody<N, M>,
+    E: SceneEffects<B, N>,
+{
     fn closed_map<'a>(&'a self, t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
-        if self.has_closed_form() { Box::new(ClosedMap::backed_by(self.piece(t), general)) } else { general }
+        if self.0.has_closed_form() { Box::new(ClosedMap::backed_by(self.0.piece(t), general)) } else { general }
     }
 
     fn series(&self, t: f64, tolerance: f64) -> Option<Stepper<'_, N, M>> {
-        let With { body, effects } = self.piece(t);
+        let With { body, effects } = self.0.piece(t);
         body.series(effects.in_own_axes(&body)?, tolerance)
     }
 }
 
+/// A list of numbers as a row.
+fn row<const N: usize>(x: &[f64]) -> [f64; N] {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(f64::NAN))
+}
+
 /// A system with its start.
-pub struct Started<const N: usize, const M: usize> {
+pub struct Started {
     /// The system.
-    pub system: Box<dyn SceneSystem<N, M>>,
+    pub system: Box<dyn SceneSystem>,
     /// Configuration at the start.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// Velocity at the start.
-    pub v: [f64; N],
+    pub v: Vec<f64>,
 }
 
-/// The system of a scene, by its shape: three coordinates or four, with a rotor; one constraint, the blade, or more, where a scene imposes
-/// velocities.
-#[derive(Debug)]
-pub enum AnySystem {
-    /// A sleigh.
-    Sleigh(Started<3, 1>),
-    /// A sleigh of which one velocity is imposed.
-    One(Started<3, 2>),
-    /// A sleigh of which two are.
-    Two(Started<3, 3>),
-    /// A sleigh with a rotor.
-    Rotor(Started<4, 1>),
-    /// The same with one velocity imposed.
-    RotorOne(Started<4, 2>),
-    /// The same with two.
-    RotorTwo(Started<4, 3>),
-}
-
-impl<const N: usize, const M: usize> std::fmt::Debug for Started<N, M> {
+impl std::fmt::Debug for Started {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Started").field("q", &self.q).field("v", &self.v).finish_non_exhaustive()
     }
@@ -147,16 +177,14 @@ pub fn system(
     rotor: Option<Rotor>,
     effects: Vec<AnyEffect>,
     start: &SleighState,
-) -> Result<AnySystem, SleighError> {
+) -> Result<Started, SleighError> {
     let list = EffectList::from;
     match body {
-        Guiding::None(sleigh) if effects.is_empty() => {
-            with_rotor(sleigh, rotor, (), start, AnySystem::Sleigh, AnySystem::Rotor)
-        }
-        Guiding::None(sleigh) => with_rotor(sleigh, rotor, list(effects), start, AnySystem::Sleigh, AnySystem::Rotor),
-        Guiding::Zero(body) => with_rotor(body, rotor, list(effects), start, AnySystem::Sleigh, AnySystem::Rotor),
-        Guiding::One(body) => with_rotor(body, rotor, list(effects), start, AnySystem::One, AnySystem::RotorOne),
-        Guiding::Two(body) => with_rotor(body, rotor, list(effects), start, AnySystem::Two, AnySystem::RotorTwo),
+        Guiding::None(sleigh) if effects.is_empty() => with_rotor(sleigh, rotor, (), start),
+        Guiding::None(sleigh) => with_rotor(sleigh, rotor, list(effects), start),
+        Guiding::Zero(body) => with_rotor(body, rotor, list(effects), start),
+        Guiding::One(body) => with_rotor(body, rotor, list(effects), start),
+        Guiding::Two(body) => with_rotor(body, rotor, list(effects), start),
     }
 }
 
@@ -166,33 +194,30 @@ fn with_rotor<B, E, const M: usize>(
     rotor: Option<Rotor>,
     effects: E,
     start: &SleighState,
-    plain: fn(Started<3, M>) -> AnySystem,
-    turning: fn(Started<4, M>) -> AnySystem,
-) -> Result<AnySystem, SleighError>
+) -> Result<Started, SleighError>
 where
-    B: SceneBody<3, M> + Piecewise + Clone + Sync + 'static,
-    E: SceneEffects<B, 3> + SceneEffects<Flywheel<B>, 4> + Piecewise + Sync + 'static,
+    B: SceneBody<3, M> + Piecewise + Clone + Send + Sync + 'static,
+    E: SceneEffects<B, 3> + SceneEffects<Flywheel<B>, 4> + Piecewise + Send + Sync + 'static,
 {
     let (q, v) = start.to_coordinates();
     Ok(match rotor {
         Some(Rotor { inertia, rate, torque }) => {
             let body = Flywheel::new(body, inertia, torque)?;
-            let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
-            turning(started(Box::new(With { body, effects }), q, v))
+            let (q, v) = (vec![q[0], q[1], q[2], 0.0], vec![v[0], v[1], v[2], rate]);
+            started(Box::new(Shaped::<_, 4, M>(With { body, effects })), q, v)
         }
-        None => plain(started(Box::new(With { body, effects }), q, v)),
+        None => started(Box::new(Shaped::<_, 3, M>(With { body, effects })), q.to_vec(), v.to_vec()),
     })
 }
 
 /// The system with the admissible velocity that has the quasi-velocities of the given one.
-fn started<const N: usize, const M: usize>(
-    system: Box<dyn SceneSystem<N, M>>,
-    q: [f64; N],
-    v: [f64; N],
-) -> Started<N, M> {
-    let first = system.smooth_piece(0.0);
-    let admissible = first.quasi_velocities(0.0, &q, &v).and_then(|xi| first.velocity_of(0.0, &q, &xi));
-    let free = M == 1 && first.constraint(0.0, &q).1.iter().all(|b| *b == 0.0);
-    drop(first);
-    Started { system, q, v: if free { v } else { admissible.unwrap_or(v) } }
+fn started(system: Box<dyn SceneSystem>, q: Vec<f64>, v: Vec<f64>) -> Started {
+    let admissible = {
+        let whole = system.mechanism();
+        let first = whole.smooth_piece(0.0);
+        let free = whole.size().m == 1 && !first.is_driven(0.0, &q);
+        let quasi = || first.velocity_of(0.0, &q, &first.quasi_velocities(0.0, &q, &v)?);
+        if free { None } else { quasi().ok() }
+    };
+    Started { system, v: admissible.unwrap_or(v), q }
 }

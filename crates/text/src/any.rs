@@ -1,5 +1,6 @@
-use crate::{TextModel, TextStart, TextSystem};
-use dla::FullMechanics;
+use crate::family::FamilySystem;
+use crate::{FREE, Family, TextModel, TextStart, TextSystem};
+use dla::{Mechanism, Member, ParametrisedMechanism, Subject};
 use std::sync::Arc;
 
 /// A system of text has at most so many coordinates.
@@ -8,84 +9,70 @@ pub const MOST_COORDINATES: usize = 12;
 pub const MOST_CONSTRAINTS: usize = 6;
 
 /// A system of text as an object.
-pub trait TextMechanics<const N: usize, const M: usize>: FullMechanics<N, M> + Sync {
+///
+/// Its own coordinates and constraints are those of its model. Its mechanism has perhaps more, behind them, that fill up a shape: they
+/// begin at rest at zero, and stay there.
+pub trait TextMechanics: Send + Sync {
     /// What the texts mean.
     fn model(&self) -> &TextModel;
+
+    /// The system for runs.
+    fn mechanism(&self) -> Box<dyn Mechanism + '_>;
+
+    /// The same as the member of the family that it was started from ([`Family::started`]); none of any other system.
+    fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>>;
 }
 
-impl<const N: usize, const M: usize> TextMechanics<N, M> for TextSystem<N, M> {
+/// A system of a shape.
+struct Shaped<const N: usize, const M: usize> {
+    system: TextSystem<N, M>,
+    /// With the values of the parameters.
+    family: Option<(FamilySystem<N, M>, [f64; FREE])>,
+}
+
+impl<const N: usize, const M: usize> TextMechanics for Shaped<N, M> {
     fn model(&self) -> &TextModel {
-        TextSystem::model(self)
+        self.system.model()
+    }
+
+    fn mechanism(&self) -> Box<dyn Mechanism + '_> {
+        Box::new(Subject::new(&self.system, &()))
+    }
+
+    fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>> {
+        let (family, values) = self.family.as_ref()?;
+        Some(Box::new(Member::new(Subject::new(&self.system, &()), family, *values)))
     }
 }
 
-/// A system with its start.
-pub struct StartedText<const N: usize, const M: usize> {
-    /// The system.
-    pub system: Box<dyn TextMechanics<N, M>>,
-    /// Configuration at the start.
-    pub q: [f64; N],
-    /// Velocity at the start.
-    pub v: [f64; N],
+/// The system of a model, with a basis for the neighbourhood of its start where the text gives none; `None` where it is too large, which
+/// those within the limits are not.
+#[must_use]
+pub fn started(model: &Arc<TextModel>, start: &TextStart) -> Option<Box<dyn TextMechanics>> {
+    in_shape(model, start, None)
 }
 
-impl<const N: usize, const M: usize> std::fmt::Debug for StartedText<N, M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Started").field("q", &self.q).field("v", &self.v).finish_non_exhaustive()
+impl Family {
+    /// The same of the member of a family.
+    #[must_use]
+    pub fn started(&self, start: &TextStart) -> Option<Box<dyn TextMechanics>> {
+        in_shape(&self.member, start, Some(self))
     }
 }
 
-/// The shapes that systems of text have, each compiled once.
-macro_rules! shapes {
-    ($($(#[$doc:meta])* $shape:ident $n:literal $m:literal;)*) => {
-        /// A system of text by its shape, the first in this list that has room for it.
-        #[derive(Debug)]
-        pub enum AnyText {
-            $($(#[$doc])* $shape(StartedText<$n, $m>),)*
-        }
-
-        impl AnyText {
-            /// The system of a model; `None` where no shape has room for it, which those within the limits have.
-            #[must_use]
-            pub fn new(model: &Arc<TextModel>, start: &TextStart) -> Option<Self> {
-                $(if let Some(started) = StartedText::new(model, start) {
-                    return Some(Self::$shape(started));
-                })*
-                None
-            }
-        }
-
-        /// The same text for whichever shape a system has.
-        #[macro_export]
-        macro_rules! with_text {
-            ($any:expr, $started:ident => $result:expr) => {
-                match $any {
-                    $($crate::AnyText::$shape($started) => $result,)*
-                }
-            };
-        }
-    };
+/// The shapes that systems of text have, each compiled once: the first that has room for a system is its own. In the last there is room
+/// for any number of constraints up to six, on twelve coordinates.
+fn in_shape(model: &Arc<TextModel>, start: &TextStart, family: Option<&Family>) -> Option<Box<dyn TextMechanics>> {
+    let shapes = [shaped::<3, 1>, shaped::<4, 2>, shaped::<6, 3>, shaped::<8, 4>, shaped::<12, 6>, shaped::<18, 6>];
+    shapes.into_iter().find_map(|shaped| shaped(model, start, family))
 }
 
-shapes! {
-    /// Up to three coordinates and one constraint.
-    Small 3 1;
-    /// Four and two.
-    Four 4 2;
-    /// Six and three.
-    Six 6 3;
-    /// Eight and four.
-    Eight 8 4;
-    /// Twelve and six.
-    Twelve 12 6;
-    /// With any number of constraints up to six, twelve coordinates.
-    Large 18 6;
-}
-
-impl<const N: usize, const M: usize> StartedText<N, M> {
-    fn new(model: &Arc<TextModel>, start: &TextStart) -> Option<Self> {
-        let system = Box::new(TextSystem::new(Arc::clone(model), 0.0, &start.q)?);
-        let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
-        Some(Self { system, q: filled(&start.q), v: filled(&start.v) })
-    }
+fn shaped<const N: usize, const M: usize>(
+    model: &Arc<TextModel>,
+    start: &TextStart,
+    family: Option<&Family>,
+) -> Option<Box<dyn TextMechanics>> {
+    let system = TextSystem::<N, M>::new(Arc::clone(model), 0.0, &start.q)?;
+    let family = family.and_then(|family| Some((family.shaped(0.0, &start.q)?, *family.values())));
+    Some(Box::new(Shaped { system, family }))
 }

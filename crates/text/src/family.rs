@@ -1,7 +1,7 @@
 use crate::tapes::TapePoint;
 use crate::{TextError, TextModel, TextSystem, Words};
 use ::formulas::{Formulas, Parameters};
-use dla::FullMechanics;
+use dla::ParametrisedMechanics;
 use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, Seeded, SeededMember, System};
 use std::array::from_fn;
 use std::sync::Arc;
@@ -71,19 +71,10 @@ impl Family {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FamilySystem<const N: usize, const M: usize>(TextSystem<N, M>);
 
-impl<const N: usize, const M: usize> FamilySystem<N, M> {
-    /// The system at values of the parameters that may carry derivatives, with the basis of that number
-    /// ([`System::near`]); zero is the one it has.
-    #[must_use]
-    pub fn at(&self, basis: u64, p: &[Seeded; FREE]) -> Box<dyn Gradients<N, M>> {
+/// The basis zero is the one it has.
+impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, FREE> for FamilySystem<N, M> {
+    fn at(&self, basis: u64, p: &[Seeded; FREE]) -> Box<dyn Gradients<N, M> + '_> {
         Box::new(SeededMember { family: Self(self.0.rebased(basis)), parameters: *p })
-    }
-
-    /// The number of the basis that a system with the basis `known` has near a configuration; zero where one basis holds everywhere.
-    pub fn basis_near(system: &dyn FullMechanics<N, M>, t: f64, q: &[f64; N], known: u64) -> u64 {
-        let mut number = 0;
-        system.near(t, q, known, &mut |near, _| number = near);
-        number
     }
 }
 

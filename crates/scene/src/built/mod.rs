@@ -3,24 +3,66 @@
 mod sleigh;
 mod text;
 
-use ::text::TextMechanics;
-use dla::{FullMechanics, Mechanics, Node, OwnMethods, Stepper, Subject};
+use ::text::{TextMechanics, TextStart};
+use dla::{Mechanism, Node, Size};
 use std::fmt;
-use std::ops::Deref;
-use systems::{Column, SceneSystem};
+use systems::{Column, SceneSystem, Started};
 
 pub use self::sleigh::{QUANTITIES, SleighQuantity};
 pub use self::text::quantities as text_quantities;
 
-/// The system of a scene: mechanics that can name what a state is.
+/// A system of a scene that was built, with its start.
+pub struct BuiltScene {
+    system: Owned,
+    /// Configuration at the start, as long as the mechanism of the system has coordinates.
+    pub q: Vec<f64>,
+    /// Velocity at the start.
+    pub v: Vec<f64>,
+}
+
+enum Owned {
+    Sleigh(Box<dyn SceneSystem>),
+    Text(Box<dyn TextMechanics>),
+}
+
+impl BuiltScene {
+    pub(crate) fn of_sleigh(Started { system, q, v }: Started) -> Self {
+        Self { system: Owned::Sleigh(system), q, v }
+    }
+
+    pub(crate) fn of_text(system: Box<dyn TextMechanics>, start: &TextStart) -> Self {
+        let all = system.mechanism().size().n;
+        let [q, v] = [&start.q, &start.v].map(|x| text::filled(x.clone(), all));
+        Self { system: Owned::Text(system), q, v }
+    }
+
+    /// The system.
+    #[must_use]
+    pub fn system(&self) -> Built<'_> {
+        match &self.system {
+            Owned::Sleigh(system) => Built::Sleigh(&**system),
+            Owned::Text(system) => Built::Text(&**system),
+        }
+    }
+}
+
+impl fmt::Debug for BuiltScene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { system: _, q, v } = self;
+        f.debug_struct("BuiltScene").field("system", &self.system()).field("q", q).field("v", v).finish()
+    }
+}
+
+/// The system of a scene: a mechanism, and what a state is in the words of the scene.
 ///
-/// It is what commands ask, so that none of them needs to know which kind a scene is of.
+/// It is what commands ask, so that none of them needs to know which kind a scene is of. Configurations and velocities are as long as its
+/// mechanism has coordinates.
 #[derive(Clone, Copy)]
-pub enum Built<'a, const N: usize, const M: usize> {
+pub enum Built<'a> {
     /// A sleigh, and what acts on it.
-    Sleigh(&'a dyn SceneSystem<N, M>),
+    Sleigh(&'a dyn SceneSystem),
     /// A system of text.
-    Text(&'a dyn TextMechanics<N, M>),
+    Text(&'a dyn TextMechanics),
 }
 
 /// A number that a state has, by its name.
@@ -49,9 +91,24 @@ impl Quantity {
 }
 
 /// Configuration and velocity of a start.
-pub type StartPlace<const N: usize> = ([f64; N], [f64; N]);
+pub type StartPlace = (Vec<f64>, Vec<f64>);
 
-impl<const N: usize, const M: usize> Built<'_, N, M> {
+impl<'a> Built<'a> {
+    /// The system for runs, with its own integrators: a sleigh has some.
+    #[must_use]
+    pub fn mechanism(&self) -> Box<dyn Mechanism + 'a> {
+        match *self {
+            Self::Sleigh(system) => system.mechanism(),
+            Self::Text(system) => system.mechanism(),
+        }
+    }
+
+    /// Whether velocities are imposed, so that the motion is not the system's own.
+    #[must_use]
+    pub fn imposes_velocities(&self) -> bool {
+        self.sleigh().is_some_and(SceneSystem::imposes_velocities)
+    }
+
     /// All quantities, the first of which [tell a state](Self::in_state), in their order.
     #[must_use]
     pub fn quantities(&self) -> Vec<Quantity> {
@@ -82,18 +139,18 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
 
     /// The value of a quantity, by its place in their list.
     #[must_use]
-    pub fn value(&self, k: usize, t: f64, q: &[f64; N], v: &[f64; N]) -> f64 {
+    pub fn value(&self, k: usize, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let value = match self {
             Self::Sleigh(system) => sleigh::value(*system, k, t, q, v),
             Self::Text(system) => text::value(system.model(), k, t, q, v),
         };
         // The energy is the last.
-        value.unwrap_or_else(|| self.smooth_piece(t).energy(t, q, v))
+        value.unwrap_or_else(|| self.mechanism().smooth_piece(t).energy(t, q, v))
     }
 
     /// What tells a state, with its values.
     #[must_use]
-    pub fn state(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<(Quantity, f64)> {
+    pub fn state(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<(Quantity, f64)> {
         let quantities = self.quantities().into_iter().take(self.in_state());
         let values: Vec<f64> = match self {
             Self::Sleigh(_) => (0..self.in_state()).map(|k| self.value(k, t, q, v)).collect(),
@@ -104,7 +161,7 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
 
     /// The columns of a trajectory that begins at this node.
     #[must_use]
-    pub fn columns(&self, first: &Node<N, M>) -> Vec<Column> {
+    pub fn columns(&self, first: &Node) -> Vec<Column> {
         match self {
             Self::Sleigh(system) => system.columns(first),
             Self::Text(system) => text::columns(system.model()),
@@ -113,7 +170,7 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
 
     /// The numbers of a node, one for each of the [`columns`](Self::columns).
     #[must_use]
-    pub fn row(&self, node: &Node<N, M>) -> Vec<f64> {
+    pub fn row(&self, node: &Node) -> Vec<f64> {
         match self {
             Self::Sleigh(system) => system.row(node),
             Self::Text(system) => text::row(system.model(), node),
@@ -123,7 +180,7 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
     /// How far two configurations are apart (m or rad, whichever is larger): the places and headings of sleighs, or the coordinates of
     /// systems of text.
     #[must_use]
-    pub fn distance(&self, a: &[f64; N], b: &[f64; N]) -> f64 {
+    pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         match self {
             Self::Sleigh(_) => sleigh::distance(a, b),
             Self::Text(_) => a.iter().zip(b).fold(0.0, |most, (a, b)| lagrangian::linear::larger(most, a - b)),
@@ -134,7 +191,10 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
     #[must_use]
     pub fn own(&self) -> (usize, usize) {
         match self {
-            Self::Sleigh(_) => (N, M),
+            Self::Sleigh(system) => {
+                let Size { n, m } = system.mechanism().size();
+                (n, m)
+            }
             Self::Text(system) => (system.model().coordinates().len(), system.model().constraints()),
         }
     }
@@ -144,7 +204,7 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
     ///
     /// Places change with their quasi-velocities as they are.
     #[must_use]
-    pub fn with(&self, start: &StartPlace<N>, k: usize, value: f64) -> Option<StartPlace<N>> {
+    pub fn with(&self, start: &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
         match self {
             Self::Sleigh(system) => sleigh::with(*system, start, k, value),
             Self::Text(system) => text::with(*system, start, k, value),
@@ -171,54 +231,19 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
 
     /// The sleigh that it is, where it is one.
     #[must_use]
-    pub fn sleigh(&self) -> Option<&dyn SceneSystem<N, M>> {
-        match self {
-            Self::Sleigh(system) => Some(*system),
+    pub fn sleigh(&self) -> Option<&'a dyn SceneSystem> {
+        match *self {
+            Self::Sleigh(system) => Some(system),
             Self::Text(_) => None,
         }
     }
 }
 
-impl<const N: usize, const M: usize> fmt::Debug for Built<'_, N, M> {
+impl fmt::Debug for Built<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let system: &dyn Mechanics<N, M> = &**self;
-        system.fmt(f)
+        self.mechanism().fmt(f)
     }
 }
 
 /// The quantity that every system has.
 const ENERGY: &str = "energy";
-
-impl<'a, const N: usize, const M: usize> Deref for Built<'a, N, M> {
-    type Target = dyn FullMechanics<N, M> + 'a;
-
-    fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Sleigh(system) => *system,
-            Self::Text(system) => *system,
-        }
-    }
-}
-
-/// A sleigh has integrators of its own.
-impl<const N: usize, const M: usize> OwnMethods<N, M> for Built<'_, N, M> {
-    fn closed_map<'a>(&'a self, t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
-        match self {
-            Self::Sleigh(system) => system.closed_map(t, general),
-            Self::Text(_) => general,
-        }
-    }
-
-    fn series(&self, t: f64, tolerance: f64) -> Option<Stepper<'_, N, M>> {
-        match self {
-            Self::Sleigh(system) => system.series(t, tolerance),
-            Self::Text(_) => None,
-        }
-    }
-}
-
-impl<'a, const N: usize, const M: usize> From<&'a Built<'a, N, M>> for Subject<'a, N, M> {
-    fn from(system: &'a Built<'a, N, M>) -> Self {
-        Self { system: &**system, own: system }
-    }
-}

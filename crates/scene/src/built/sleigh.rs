@@ -59,21 +59,15 @@ fn turned((at, [x, y]): &Seen) -> [f64; 2] {
     [x * cos + y * sin, y * cos - x * sin]
 }
 
-pub(super) fn quantities<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>) -> Vec<Quantity> {
+pub(super) fn quantities(system: &dyn SceneSystem) -> Vec<Quantity> {
     let of = |name: &str, unit: &str, angle| Quantity { name: name.to_owned(), unit: unit.to_owned(), angle };
     let own = QUANTITIES.iter().map(|known| of(known.name, known.unit, known.is_angle()));
-    let rotor = system.rotor(&[0.0; N], &[0.0; N]).map_or(&[][..], |_| &ROTOR);
+    let rotor = system.rotor(&[], &[]).map_or(&[][..], |_| &ROTOR);
     own.chain(rotor.iter().chain([&FORCE]).map(|(name, unit)| of(name, unit, false))).collect()
 }
 
 /// The value of a quantity, where it is one of these.
-pub(super) fn value<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
-    k: usize,
-    t: f64,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> Option<f64> {
+pub(super) fn value(system: &dyn SceneSystem, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
     if let Some(quantity) = QUANTITIES.get(k) {
         let centre = if k < IN_STATE { [0.0; 2] } else { system.centre(q) };
         return Some((quantity.value)(&(system.sleigh_state(q, v), centre)));
@@ -82,29 +76,26 @@ pub(super) fn value<const N: usize, const M: usize>(
     let rotor = rotor.as_ref().map_or(&[][..], |rotor| rotor);
     let k = k - QUANTITIES.len();
     // The first constraint is that of the blade.
-    let force = || system.scene_piece(t).motion(t, q, v).ok()?.multiplier.first().copied();
+    let force = || system.scene_piece(t).mechanism().motion(t, q, v).ok()?[1].first().copied();
     rotor.get(k).copied().or_else(|| (k == rotor.len()).then(|| force().unwrap_or(f64::NAN)))
 }
 
 /// The larger of the distances in position (m) and in heading (rad).
-pub(super) fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
     let [[ax, ay, a], [bx, by, b]] = [a, b].map(|q| std::array::from_fn(|i| q.get(i).copied().unwrap_or(0.0)));
     let (place, turn) = (f64::hypot(ax - bx, ay - by), (a - b).abs());
     if place > turn || place.is_nan() { place } else { turn }
 }
 
-pub(super) fn with<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
-    (q, v): &StartPlace<N>,
-    k: usize,
-    value: f64,
-) -> Option<StartPlace<N>> {
+pub(super) fn with(system: &dyn SceneSystem, (q, v): &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
     let mut state = system.sleigh_state(q, v);
     let SleighState { x, y, heading, speed, turn_rate } = &mut state;
     **[x, y, heading, speed, turn_rate].get_mut(k)? = value;
     let (place, velocity) = state.to_coordinates();
-    let with = |x: &[f64; N], first: &[f64; 3]| std::array::from_fn(|i| first.get(i).copied().unwrap_or(x[i]));
+    let with = |x: &[f64], first: &[f64]| [first, x.get(first.len()..).unwrap_or_default()].concat();
     let (q, v) = (with(q, &place), with(v, &velocity));
-    let xi = system.quasi_velocities(0.0, &q, &v).ok()?;
-    Some((q, system.velocity_of(0.0, &q, &xi).ok()?))
+    let mechanism = system.mechanism();
+    let xi = mechanism.quasi_velocities(0.0, &q, &v).ok()?;
+    let v = mechanism.velocity_of(0.0, &q, &xi).ok()?;
+    Some((q, v))
 }

@@ -2,7 +2,7 @@
 
 use super::{Quantity, StartPlace};
 use ::text::{Coordinate, TextMechanics, TextModel, Unit};
-use dla::Node;
+use dla::{Node, Size};
 use systems::Column;
 
 /// The quantities of a system of text: coordinates, rates and outputs.
@@ -28,16 +28,16 @@ pub(super) fn in_state(model: &TextModel) -> usize {
 pub(super) fn value(model: &TextModel, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
     let n = model.coordinates().len();
     match k.checked_sub(n) {
-        None => Some(q[k]),
-        Some(k) if k < n => Some(v[k]),
-        Some(k) => model.output(k - n, t, &q[..n], &v[..n]),
+        None => q.get(k).copied(),
+        Some(k) if k < n => v.get(k).copied(),
+        Some(k) => model.output(k - n, t, q.get(..n)?, v.get(..n)?),
     }
 }
 
 /// The values of all of them, in their order.
 pub(super) fn values(model: &TextModel, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
     let n = model.coordinates().len();
-    let (q, v) = (&q[..n], &v[..n]);
+    let (Some(q), Some(v)) = (q.get(..n), v.get(..n)) else { return Vec::new() };
     q.iter().chain(v).copied().chain(model.told(t, q, v)).collect()
 }
 
@@ -50,7 +50,7 @@ pub(super) fn columns(model: &TextModel) -> Vec<Column> {
 }
 
 /// The numbers of a node in these columns.
-pub(super) fn row<const N: usize, const M: usize>(model: &TextModel, node: &Node<N, M>) -> Vec<f64> {
+pub(super) fn row(model: &TextModel, node: &Node) -> Vec<f64> {
     let numbers = values(model, node.t, &node.q, &node.v);
     let first = 2 * model.coordinates().len();
     between(numbers, first, node.t, || [node.energy, node.work, node.constraint])
@@ -63,24 +63,26 @@ fn between<T>(mut state: Vec<T>, first: usize, time: T, told: impl Fn() -> [T; 3
 }
 
 /// A place with its quasi-velocities as they are, or a rate with the others as near as the constraints admit.
-pub(super) fn with<const N: usize, const M: usize>(
-    system: &dyn TextMechanics<N, M>,
-    (q, v): &StartPlace<N>,
-    k: usize,
-    value: f64,
-) -> Option<StartPlace<N>> {
-    let model = system.model();
+pub(super) fn with(system: &dyn TextMechanics, (q, v): &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
+    let (model, mechanism) = (system.model(), system.mechanism());
+    let Size { n: all, .. } = mechanism.size();
     let n = model.coordinates().len();
-    let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
     if k >= n {
-        return Some((*q, filled(&model.with_rate(&q[..n], &v[..n], k - n, value)?)));
+        return Some((q.clone(), filled(model.with_rate(q.get(..n)?, v.get(..n)?, k - n, value)?, all)));
     }
-    let xi = system.quasi_velocities(0.0, q, v).ok()?;
-    let mut q = *q;
-    q[k] = value;
-    let v = system.velocity_of(0.0, &q, &xi).ok()?;
+    let xi = mechanism.quasi_velocities(0.0, q, v).ok()?;
+    let mut q = q.clone();
+    *q.get_mut(k)? = value;
+    let v = mechanism.velocity_of(0.0, &q, &xi).ok()?;
     // Constraints on positions may ask for another place.
-    let given = |x: &[f64]| -> Vec<Option<f64>> { x[..n].iter().copied().map(Some).collect() };
+    let given = |x: &[f64]| -> Vec<Option<f64>> { x.iter().take(n).copied().map(Some).collect() };
     let start = model.start(&given(&q), &given(&v)).ok()?;
-    (start.q[k] - value).abs().le(&(1e-9 * value.abs().max(1.0))).then(|| (filled(&start.q), filled(&start.v)))
+    let off = (start.q.get(k)? - value).abs();
+    off.le(&(1e-9 * value.abs().max(1.0))).then(|| (filled(start.q, all), filled(start.v, all)))
+}
+
+/// The numbers of a start with those of the coordinates that fill up the shape of a system.
+pub(super) fn filled(mut x: Vec<f64>, all: usize) -> Vec<f64> {
+    x.resize(all, 0.0);
+    x
 }

@@ -12,9 +12,9 @@ use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::scene::{name_of, one_line, opened};
 use crate::table::TomlTable;
-use crate::{Built, Overrides, RunSettings, Scene, Visitor};
+use crate::{BuiltScene, Overrides, RunSettings, Scene};
 use ::sleigh::SleighError;
-use ::text::{AnyText, TextModel, TextStart, Words, with_text};
+use ::text::{Family, TextMechanics, TextModel, TextStart, Words};
 use dla::{Schedule, fitted};
 use std::fmt;
 use std::sync::Arc;
@@ -141,25 +141,14 @@ impl AnyScene {
         }
     }
 
-    /// Builds the system of the scene and hands it to the visitor.
+    /// The system of the scene, with its start.
     ///
     /// # Errors
     /// [`BuildError`] where there is no such system.
-    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, BuildError> {
+    pub fn built(&self) -> Result<BuiltScene, BuildError> {
         match self {
-            Self::Sleigh(scene) => Ok(scene.visit(visitor)?),
-            Self::Text(scene) => scene.visit(visitor),
-        }
-    }
-
-    /// The same of a scene whose motion is its own; `None` of a sleigh of which velocities are imposed.
-    ///
-    /// # Errors
-    /// As [`visit`](Self::visit).
-    pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, BuildError> {
-        match self {
-            Self::Sleigh(scene) => Ok(scene.visit_free(visitor)?),
-            Self::Text(scene) => scene.visit(visitor).map(Some),
+            Self::Sleigh(scene) => Ok(scene.built()?),
+            Self::Text(scene) => scene.built(),
         }
     }
 
@@ -283,12 +272,23 @@ impl TextScene {
         jumps.map(|_| ()).ok_or_else(|| Fault::too_many_corners(self.run.duration))
     }
 
-    /// Builds the system and hands it to the visitor.
+    /// The system of the scene, with its start.
     ///
     /// # Errors
     /// [`BuildError::NoRoom`] of a scene that was not read from a text: sizes were checked there.
-    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, BuildError> {
-        let system = AnyText::new(&self.model, &self.start).ok_or(BuildError::NoRoom)?;
-        Ok(with_text!(system, started => visitor.visit(Built::Text(&*started.system), started.q, started.v)))
+    pub fn built(&self) -> Result<BuiltScene, BuildError> {
+        self.begun(::text::started(&self.model, &self.start))
+    }
+
+    /// The same as the member of a family in some of its parameters ([`Family`]).
+    ///
+    /// # Errors
+    /// As [`built`](Self::built).
+    pub fn built_in(&self, family: &Family) -> Result<BuiltScene, BuildError> {
+        self.begun(family.started(&self.start))
+    }
+
+    fn begun(&self, system: Option<Box<dyn TextMechanics>>) -> Result<BuiltScene, BuildError> {
+        Ok(BuiltScene::of_text(system.ok_or(BuildError::NoRoom)?, &self.start))
     }
 }
