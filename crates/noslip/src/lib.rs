@@ -33,16 +33,15 @@ pub use npz::write_npz;
 #[cfg(feature = "assembly")]
 pub use assembly;
 pub use dla::{
-    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite,
-    Hint, History, InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
-    Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View,
-    Watch, consistent_start, recommend_step, slip,
+    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, DiscreteLagrangian, Dla, Equations, Event,
+    Form, Hermite, Hint, History, InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep,
+    RecommendError, Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport,
+    Trajectory, View, Watch, consistent_start, recommend_step, slip,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
-    Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar,
-    ScalarFunction, Symmetrised, System, Trapezoid, With, WithBasis, classify, constraint_residual, energy,
-    mass_matrix, momentum, vectorized,
+    self, AdmissibleBasis, Alpha, Attitude, Constraint, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion,
+    MotionError, Parametrised, Reduced, Rule, Scalar, ScalarFunction, System, Trapezoid, With, WithBasis, classify,
+    constraint_residual, energy, mass_matrix, momentum, vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 
