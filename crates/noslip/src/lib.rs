@@ -8,7 +8,7 @@
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
 //! | give a body an attitude that ends nowhere; refuse steps near where other coordinates end | [`Attitude`], [`InChart`] |
 //! | add what acts on a body; derive a basis of the admissible velocities | [`Effect`], [`With`]; [`WithBasis`] |
-//! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
+//! | ask what its constraints let it reach | [`lagrangian::growth`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |

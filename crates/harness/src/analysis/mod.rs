@@ -13,7 +13,6 @@ mod linearised;
 mod lyapunov;
 mod manifold;
 mod measure;
-mod momentum_meter;
 mod neutral;
 mod pace;
 mod parallel;
@@ -37,7 +36,6 @@ pub use equilibria::{
 pub use linearised::{ReducedField, reduced_field};
 pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov, lyapunov_by, lyapunov_within};
 pub use measure::{enclosed_area, measure_defect};
-pub use momentum_meter::MomentumMeter;
 pub(crate) use parallel::STACK;
 pub use parallel::{in_parallel, prepare_threads};
 pub use phase::{Rounds, weighted_mean};
