@@ -15,7 +15,7 @@ METHODS = ("dla", "dla-trapezoid", "dla-alpha", "dla4", "dla6", "dla8", "lobatto
            "gauss-adaptive", "energy2", "energy4", "energy8", "rk4", "rk4-projected", "rk4-reduced", "implicit-midpoint", "dop853")  # fmt: skip
 KINDS = ("spin", "stiff", "light", "train", "rest", "units", "text")
 OWN_STEPS = ("gauss-adaptive", "dop853")
-TRAINS = ("dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2")
+TRAINS = ("dla", "dla4", "dla6", "dla8")
 # A step resolves a motion where it is at most so much of the time of its fastest rate.
 RESOLVED = 0.5
 # An end is promised where the bound of its error is at most so much of the way.

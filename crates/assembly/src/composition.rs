@@ -1,4 +1,4 @@
-use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver, SparseDla};
+use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseDla};
 
 /// A symmetric composition of the steps of an assembly, `S_(g_1 h) S_(g_2 h) .. S_(g_n h)`, with the weights of
 /// [`dla::Composition`].
@@ -26,20 +26,14 @@ impl SparseComposition {
 }
 
 impl AssemblyMethod for SparseComposition {
-    fn step(
-        &mut self,
-        assembly: &Assembly,
-        t: f64,
-        h: f64,
-        state: &mut AssemblyState,
-    ) -> Result<AssemblyReport, AssemblyError> {
+    fn step(&mut self, assembly: &Assembly, t: f64, h: f64, state: &mut AssemblyState) -> Result<u32, AssemblyError> {
         self.inner.copy_from(state);
         let (mut iterations, mut done) = (0, 0.0);
         for weight in &self.weights {
-            iterations += self.base.step(assembly, t + done * h, weight * h, &mut self.inner)?.iterations;
+            iterations += self.base.step(assembly, t + done * h, weight * h, &mut self.inner)?;
             done += weight;
         }
         std::mem::swap(state, &mut self.inner);
-        Ok(AssemblyReport::of(iterations))
+        Ok(iterations)
     }
 }

@@ -5,7 +5,7 @@ use crate::linear::Linear;
 use crate::local::WIDEST;
 use crate::projection::project;
 use crate::terms;
-use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
+use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver};
 use dla::Stage;
 use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
@@ -234,7 +234,7 @@ impl AssemblyEquations {
 
 /// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
 /// difference keeps the digits that the coordinates have lost far away.
-pub(crate) fn relative(
+fn relative(
     placed: &PlacedElement,
     origins: &[Option<usize>],
     h: f64,
@@ -254,7 +254,7 @@ pub(crate) fn relative(
 
 /// The predictor of the mean velocity: extrapolated from the last steps, or with the acceleration of the last one. `v0` where neither is
 /// known, or where it would change the velocity so much that Newton's method might converge to another solution.
-pub(crate) fn predict(state: &AssemblyState, h: f64, v0: &[f64], v: &mut [f64]) {
+fn predict(state: &AssemblyState, h: f64, v0: &[f64], v: &mut [f64]) {
     /// The largest change of the velocity by a predictor, relative to the velocity, as in the static method.
     const MOST: f64 = 0.125;
     let gained = |i: usize| {
@@ -276,13 +276,7 @@ pub(crate) fn predict(state: &AssemblyState, h: f64, v0: &[f64], v: &mut [f64]) 
 }
 
 impl AssemblyMethod for SparseDla {
-    fn step(
-        &mut self,
-        assembly: &Assembly,
-        t0: f64,
-        h: f64,
-        state: &mut AssemblyState,
-    ) -> Result<AssemblyReport, AssemblyError> {
+    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut AssemblyState) -> Result<u32, AssemblyError> {
         for i in 0..state.len() {
             (self.q0[i], self.v0[i]) = (state.q(i), state.v(i));
         }
@@ -300,6 +294,6 @@ impl AssemblyMethod for SparseDla {
             let (v, v1) = (self.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(AssemblyReport::of(iterations))
+        Ok(iterations)
     }
 }

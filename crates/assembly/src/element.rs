@@ -1,5 +1,3 @@
-use crate::energy::element::EnergyElement;
-use crate::lobatto::element::StageElement;
 use dla::NotANumber;
 use std::fmt::Debug;
 
@@ -26,7 +24,7 @@ pub struct ElementBlocks<'a> {
 /// It says of a step what the static integrator [`Dla`](dla::Dla) with midpoint rules says of its system, equation by
 /// equation, in slices of its own length. [`Assembly::attach`](crate::Assembly::attach) makes one of any
 /// [`System`](lagrangian::System), [`Assembly::join`](crate::Assembly::join) of any [`Joint`](crate::Joint).
-pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
+pub trait Element: Debug + Send + Sync {
     /// The numbers `N` of coordinates and `M` of constraint rows.
     fn size(&self) -> (usize, usize);
 

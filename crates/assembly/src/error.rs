@@ -93,18 +93,6 @@ pub enum AssemblyError {
         /// The longest part of the step for which they do not.
         part: f64,
     },
-    /// A method that keeps the energy has not kept it: along the step it is too rough for the quadrature, or the kinetic energy
-    /// is not one that the method does.
-    #[error(
-        "the energy changes by {defect:.2e} J more than the work of the forces, and round-off explains only \
-        {bound:.2e} J"
-    )]
-    Energy {
-        /// By how much more than the work the energy has changed (J).
-        defect: f64,
-        /// What rounding may do (J).
-        bound: f64,
-    },
     /// A coordinate or a velocity became infinite or not a number.
     #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,
@@ -163,7 +151,6 @@ impl AssemblyError {
             }
             Self::Branch { .. } => StepError::Branch,
             Self::Overshoot { part } => StepError::Overshoot { part: *part },
-            Self::Energy { defect, bound } => StepError::Energy { defect: *defect, bound: *bound },
             Self::NotFinite => StepError::NotFinite,
             Self::NotANumber { source, .. } => StepError::NotANumber(*source),
             Self::Unresolved => StepError::Unresolved,

@@ -79,7 +79,6 @@ impl AssemblyError {
         let lost = match &self {
             Self::NotFinite | Self::Singular { .. } => true,
             Self::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
-            Self::Energy { defect, .. } => !defect.is_finite(),
             _ => false,
         };
         let found = if lost { assembly.not_a_number(t, state) } else { None };

@@ -1,17 +1,5 @@
 use crate::Assembly;
-use crate::assembly::PlacedElement;
 use faer::sparse::SymbolicSparseColMat;
-
-/// What fills a part of the matrix: some unknowns, and constraints that they take part in.
-#[derive(Debug, Clone)]
-pub(crate) struct PatternPart {
-    pub(crate) at: Box<[usize]>,
-    /// The first of its constraints, and how many there are.
-    pub(crate) row: usize,
-    pub(crate) rows: usize,
-    /// Whether it has a block in the unknowns.
-    pub(crate) acts: bool,
-}
 
 /// Where every number of every element goes in the matrix of the equations
 ///
@@ -42,25 +30,14 @@ pub(crate) struct MatrixPlaces<'a> {
 
 impl Pattern {
     pub(crate) fn of(assembly: &Assembly) -> Self {
-        let part = |placed: &PlacedElement| PatternPart {
-            at: placed.at.clone(),
-            row: placed.row,
-            rows: placed.rows,
-            acts: placed.element.acts(),
-        };
-        let parts: Vec<PatternPart> = assembly.placed().iter().map(part).collect();
-        Self::of_parts((assembly.coordinates(), assembly.rows()), &parts)
-    }
-
-    /// The pattern of parts on `n` coordinates with `m` constraints.
-    pub(crate) fn of_parts((n, m): (usize, usize), parts: &[PatternPart]) -> Self {
-        let unknowns = n + m;
+        let n = assembly.coordinates();
+        let unknowns = n + assembly.rows();
         // Columns first, so that the sorted keys are the compressed columns.
         let (mut wanted, mut starts) = (Vec::<u64>::new(), vec![0]);
         let key = |row: usize, column: usize| (column * unknowns + row) as u64;
-        for placed in parts {
+        for placed in assembly.placed() {
             let row = |k: usize| n + placed.row + k;
-            if placed.acts {
+            if placed.element.acts() {
                 wanted.extend(placed.at.iter().flat_map(|i| placed.at.iter().map(move |j| key(*i, *j))));
             }
             wanted.extend((0..placed.rows).flat_map(|k| placed.at.iter().map(move |i| key(*i, row(k)))));
@@ -83,7 +60,7 @@ impl Pattern {
         let place = |key: &u64| sorted.binary_search(key).unwrap_or(0) as u32;
         let (places, regular) = (wanted.iter().map(place).collect(), diagonal.iter().map(place).collect());
         let symbolic = SymbolicSparseColMat::new_checked(unknowns, unknowns, columns, None, rows);
-        Self { symbolic, along: along(n, parts), places, starts, regular }
+        Self { symbolic, along: along(assembly), places, starts, regular }
     }
 
     /// How many numbers the matrix has.
@@ -140,9 +117,10 @@ impl Pattern {
 }
 
 /// The unknowns in the order of the coordinates, each constraint after the last of its own.
-fn along(n: usize, parts: &[PatternPart]) -> Vec<u32> {
+fn along(assembly: &Assembly) -> Vec<u32> {
+    let n = assembly.coordinates();
     let mut keyed: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
-    for placed in parts {
+    for placed in assembly.placed() {
         let last = placed.at.iter().copied().max().unwrap_or(0);
         keyed.extend((0..placed.rows).map(|k| (last, n + placed.row + k)));
     }

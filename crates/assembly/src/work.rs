@@ -2,16 +2,14 @@ use crate::contributions::{at, gathered};
 use crate::element::ElementBlocks;
 use crate::local::WIDEST;
 use crate::motion::ElementMotion;
-use crate::{Assembly, AssemblyReport, AssemblyState};
+use crate::{Assembly, AssemblyState};
 use dla::{Checkpoint, CheckpointError, Hermite};
 use lagrangian::added;
 use lagrangian::quadrature::gauss_legendre;
 
 /// The work done on an assembly since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
 ///
-/// It is that of [`dla::Work`], summed over the elements. Where a method reports the work of its step, that counts: the discrete
-/// forces of an energy-preserving method change the energy by just so much, and the work of the same forces along any other
-/// path would be taken for a drift. Elsewhere the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along
+/// It is that of [`dla::Work`], summed over the elements: the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along
 /// the polynomial of degree five that has the positions, velocities and accelerations of both ends of the step, which is of order 6.
 /// A step whose forces and moving constraints have no power costs no acceleration.
 pub struct AssemblyWork {
@@ -90,14 +88,8 @@ impl AssemblyWork {
     }
 
     /// Adds the work of a step, from one time and state to another. It is not a number where the accelerations are not determined.
-    pub fn step(
-        &mut self,
-        assembly: &Assembly,
-        before: (f64, &AssemblyState),
-        after: (f64, &AssemblyState),
-        report: &AssemblyReport,
-    ) {
-        let work = report.work.unwrap_or_else(|| self.over_step(assembly, before, after));
+    pub fn step(&mut self, assembly: &Assembly, before: (f64, &AssemblyState), after: (f64, &AssemblyState)) {
+        let work = self.over_step(assembly, before, after);
         self.add(work);
     }
 

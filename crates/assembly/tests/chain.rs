@@ -2,7 +2,7 @@
 
 use crate::tools::{bent, slope, weighted};
 use assembly::parts::Train;
-use assembly::{AssemblyMethod, Solver, SparseDla, SparseEnergy};
+use assembly::{AssemblyMethod, Solver, SparseDla};
 
 /// The largest relative energy error of a run.
 fn error(train: &Train, method: &mut dyn AssemblyMethod, duration: f64, h: f64) -> f64 {
@@ -36,7 +36,7 @@ fn its_energy_error_is_of_second_order_at_length() {
 
 /// Whatever the chain does for forty seconds, the midpoint rule bounds its energy error by the square of the step. The positive
 /// control is a drag, too weak to see in the motion: what it takes does not shrink with the step. (In the long run the energy of
-/// such a chain drifts, by the second order too: `docs/guide/many-bodies.md` has how far. That of `energy2` does not.)
+/// such a chain drifts, by the second order too: `docs/guide/many-bodies.md` has how far.)
 fn of_second_order((blades, drag): (usize, f64), duration: f64, lengths: &[f64]) {
     let chain = weighted(blades, 0.0);
     let (order, least) = fitted(&chain, duration, lengths);
@@ -44,31 +44,4 @@ fn of_second_order((blades, drag): (usize, f64), duration: f64, lengths: &[f64])
     println!("order {order}, {least:e}; with drag {control}, {taken:e}");
     assert!((order - 2.0).abs() < 0.1, "order {order}");
     assert!(control < 0.5 && taken > 10.0 * least, "{control}");
-    let kept = error(&chain, &mut SparseEnergy::new(&chain.assembly, Solver::Best).unwrap(), duration, 0.04);
-    println!("energy2: {kept:e}");
-    // As many steps of rounding that walks at random.
-    assert!(kept < 4.0 * f64::EPSILON * (duration / 0.04).sqrt(), "{kept:e}");
-}
-
-/// What changes the energy of `energy2` over 1e5 steps is rounding that walks at random: the mean change of a thousand steps is zero
-/// within four of its standard errors.
-#[test]
-#[ignore = "slow"]
-fn its_energy_does_not_drift() {
-    let chain = weighted(10, 0.0);
-    let (assembly, mut state) = (&chain.assembly, bent(&chain));
-    let mut method = SparseEnergy::new(assembly, Solver::Best).unwrap();
-    let mut energies = vec![assembly.energy(0.0, &state)];
-    for k in 1..=100_000 {
-        method.step(assembly, f64::from(k - 1) * 0.04, 0.04, &mut state).unwrap();
-        if k % 1000 == 0 {
-            energies.push(assembly.energy(0.0, &state));
-        }
-    }
-    let changes: Vec<f64> = energies.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let n = changes.len() as f64;
-    let mean = changes.iter().sum::<f64>() / n;
-    let error = (changes.iter().map(|change| (change - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt();
-    println!("{:e} J of {} J; a thousand steps {mean:e} J, give or take {error:e} J", n * mean, energies[0]);
-    assert!(mean.abs() < 4.0 * error);
 }

@@ -6,7 +6,7 @@
 
 use crate::tools::{bent, slope, train};
 use assembly::parts::Train;
-use assembly::{AssemblyMethod, Solver, SparseDla, SparseEnergy, SparseLobatto};
+use assembly::{AssemblyMethod, Solver, SparseDla};
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use rustix::time::{ClockId, clock_gettime};
 use sleigh::Sleigh;
@@ -50,7 +50,7 @@ fn evaluations(blades: usize) -> (f64, u32) {
     let mut method = SparseDla::new(&train.assembly, Solver::Sparse).unwrap().on_one_thread();
     let mut state = bent(&train);
     asked.store(0, Relaxed);
-    let mut step = |k: u32| method.step(&train.assembly, f64::from(k) * 0.02, 0.02, &mut state).unwrap().iterations;
+    let mut step = |k: u32| method.step(&train.assembly, f64::from(k) * 0.02, 0.02, &mut state).unwrap();
     let iterations = (0..STEPS).map(&mut step).sum();
     (asked.load(Relaxed) as f64 / (f64::from(iterations) * blades as f64), iterations)
 }
@@ -97,11 +97,7 @@ fn seconds() -> f64 {
 fn step(blades: usize, solver: Solver, steps: u32) -> f64 {
     let train = train(blades);
     let mut method = SparseDla::new(&train.assembly, solver).unwrap().on_one_thread();
-    of(&train, &mut method, steps)
-}
-
-fn of(train: &Train, method: &mut dyn AssemblyMethod, steps: u32) -> f64 {
-    let mut state = bent(train);
+    let mut state = bent(&train);
     let mut fastest = f64::INFINITY;
     for k in 0..steps {
         let clock = seconds();
@@ -153,27 +149,5 @@ fn figures() {
         let mut seconds = 0.0;
         let memory = allocation_counter::measure(|| seconds = step(blades, Solver::Best, 30)).bytes_max;
         println!("{blades:>5} blades: {:.4} ms a step, {:.1} kB", seconds * 1e3, memory as f64 / 1024.0);
-    }
-}
-
-/// Of the other methods too, to thousands of blades.
-#[test]
-#[ignore = "measures, if NOSLIP_MEASURE=1"]
-fn figures_of_methods() {
-    if !measures() {
-        return;
-    }
-    for blades in [10, 100, 1000, 10_000] {
-        let train = train(blades);
-        let assembly = &train.assembly;
-        let new: [(&str, Box<dyn AssemblyMethod>); 4] = [
-            ("dla", Box::new(SparseDla::new(assembly, Solver::Best).unwrap().on_one_thread())),
-            ("energy2", Box::new(SparseEnergy::new(assembly, Solver::Best).unwrap())),
-            ("lobatto3", Box::new(SparseLobatto::new(assembly, Solver::Best, 3).unwrap())),
-            ("lobatto5", Box::new(SparseLobatto::new(assembly, Solver::Best, 5).unwrap())),
-        ];
-        for (name, mut method) in new {
-            println!("{blades:>5} blades, {name}: {:.4} ms a step", of(&train, method.as_mut(), 5) * 1e3);
-        }
     }
 }

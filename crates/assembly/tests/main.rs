@@ -13,8 +13,6 @@
 mod car;
 mod chain;
 mod cost;
-mod energy;
-mod lobatto;
 mod long;
 mod models;
 mod rest;

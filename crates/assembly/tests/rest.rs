@@ -2,7 +2,7 @@
 
 use crate::tools::train;
 use assembly::parts::{Trailer, Train};
-use assembly::{AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla, SparseEnergy, SparseLobatto};
+use assembly::{AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla};
 use lagrangian::With;
 use sleigh::effects::{Bowl, Drag};
 use sleigh::{Sleigh, SleighState};
@@ -21,9 +21,6 @@ fn methods(train: &Train) -> Vec<(&'static str, Box<dyn AssemblyMethod>)> {
     vec![
         ("dla", Box::new(SparseDla::new(assembly, solver).unwrap())),
         ("dla4", Box::new(SparseComposition::new(assembly, solver, 4).unwrap())),
-        ("lobatto3", Box::new(SparseLobatto::new(assembly, solver, 3).unwrap())),
-        ("lobatto5", Box::new(SparseLobatto::new(assembly, solver, 5).unwrap())),
-        ("energy2", Box::new(SparseEnergy::new(assembly, solver).unwrap())),
     ]
 }
 

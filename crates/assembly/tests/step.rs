@@ -1,9 +1,6 @@
 use crate::tools::{bent, end, train};
 use assembly::parts::{Hinge, Train};
-use assembly::{
-    Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla, SparseEnergy,
-    SparseLobatto,
-};
+use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla};
 use dla::{Hint, Stage};
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use sleigh::Sleigh;
@@ -22,13 +19,8 @@ fn a_step_allocates_nothing_in_full() {
 /// After the first steps, in which the factors find their room.
 fn allocates_nothing(blades: usize, steps: i32) {
     let train = train(blades);
-    let all = [Solver::Sparse, Solver::Dense].into_iter().flat_map(|solver| {
-        let dla: Box<dyn AssemblyMethod> = Box::new(SparseDla::new(&train.assembly, solver).unwrap());
-        let energy = Box::new(SparseEnergy::new(&train.assembly, solver).unwrap());
-        [(solver, dla), (solver, energy), (solver, Box::new(SparseLobatto::new(&train.assembly, solver, 3).unwrap()))]
-    });
-    for (solver, mut method) in all {
-        let mut state = bent(&train);
+    for solver in [Solver::Sparse, Solver::Dense] {
+        let (mut method, mut state) = (SparseDla::new(&train.assembly, solver).unwrap(), bent(&train));
         let mut step = |k: i32| {
             let h = 0.02;
             method.step(&train.assembly, h * f64::from(k), h, &mut state).unwrap();
@@ -84,12 +76,12 @@ fn has_order(
     assert!((order - expected).abs() < 0.3, "{expected}: {order}, {errors:?}");
 }
 
-/// Of order 2 and 4, against the eighth of the Lobatto methods.
+/// Of order 2 and 4, against the eighth.
 #[test]
 fn compositions_have_their_order() {
     let train = train(2);
     let assembly = &train.assembly;
-    let exact = end(&train, 1.0, &mut SparseLobatto::new(assembly, Solver::Best, 5).unwrap(), 20);
+    let exact = end(&train, 1.0, &mut SparseComposition::new(assembly, Solver::Best, 8).unwrap(), 40);
     let run = (&train, 1.0, &exact);
     has_order(run, &mut SparseDla::new(assembly, Solver::Best).unwrap(), 20, 2.0);
     has_order(run, &mut SparseComposition::new(assembly, Solver::Best, 4).unwrap(), 10, 4.0);
@@ -162,10 +154,9 @@ fn a_force_without_a_derivative_is_named() {
         let at = [first[0], first[1], first[2], second[0], second[1], second[2]];
         bodies.join("hinge", hinge, at).unwrap();
         let rest = AssemblyState::new(&bodies, &[0.0, 0.0, 0.0, -1.0, 0.0, 0.0], &[0.0; 6]);
-        let methods: [Box<dyn AssemblyMethod>; 3] = [
+        let methods: [Box<dyn AssemblyMethod>; 2] = [
             Box::new(SparseDla::new(&bodies, Solver::Best).unwrap()),
             Box::new(SparseComposition::new(&bodies, Solver::Best, 4).unwrap()),
-            Box::new(SparseLobatto::new(&bodies, Solver::Best, 3).unwrap()),
         ];
         for mut method in methods {
             let mut state = rest.clone();

@@ -32,21 +32,6 @@ pub(crate) fn end(train: &Train, duration: f64, method: &mut dyn AssemblyMethod,
     state
 }
 
-/// Hills in a wide bowl, so that what runs there comes back.
-pub(crate) fn ground() -> (Bowl, Hills) {
-    let hill = |height, x, y, width| Hill { height, x, y, width };
-    let hills = vec![hill(0.4, 1.5, 0.5, 0.8), hill(0.3, -2.0, 1.0, 1.0), hill(-0.3, 0.5, -2.0, 0.9)];
-    (Bowl::new([0.1, 0.12], [0.0, 0.0]).unwrap(), Hills::new(hills).unwrap())
-}
-
-/// The same train on hills, with their effects under every blade.
-pub(crate) fn hilly(blades: usize) -> Train {
-    let trailer = Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8).unwrap();
-    let lead = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: ground() };
-    let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: ground() };
-    Train::new(lead, vec![trailer; blades - 1], body).unwrap()
-}
-
 /// The slope of a line through points.
 pub(crate) fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;

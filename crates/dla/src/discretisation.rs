@@ -1,13 +1,10 @@
 use crate::Mechanics;
-use lagrangian::{
-    AdmissibleBasis, AnyRule, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Rounded, Rule,
-    System, from_fn, mapped, on_line,
-};
+use lagrangian::{AdmissibleBasis, Dual, HyperDual, Rounded, Rule, from_fn, mapped, on_line};
 
 /// A discrete Lagrangian and a discrete constraint, as the equations of a step ask for them: in numbers.
 ///
 /// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`, a step by its time and length `(t0, h)`. [`Rules`] are
-/// quadrature rules for both; [`HandMade`] is what a user writes as a [`DiscreteLagrangian`].
+/// quadrature rules for both; a user writes a [`DiscreteLagrangian`](crate::DiscreteLagrangian).
 pub trait Discretisation<const N: usize, const M: usize> {
     /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`, with the nodes placed by the mean velocity `way`, which is
     /// near to `v`: what depends on the nodes alone need not be evaluated again for `v`.
@@ -83,14 +80,14 @@ pub struct RoundedStep<const N: usize, const M: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
     /// Of `L_d`.
-    pub lagrangian: AnyRule,
+    pub lagrangian: Rule,
     /// Of `w_d`.
-    pub constraint: AnyRule,
+    pub constraint: Rule,
 }
 
 impl Rules {
     /// The pair.
-    pub fn new(lagrangian: impl Into<AnyRule>, constraint: impl Into<AnyRule>) -> Self {
+    pub fn new(lagrangian: impl Into<Rule>, constraint: impl Into<Rule>) -> Self {
         Self { lagrangian: lagrangian.into(), constraint: constraint.into() }
     }
 }
@@ -265,99 +262,5 @@ fn add_weighted<const N: usize>(sum: &mut Option<HyperDual<f64, N, N>>, term: Hy
         for j in 0..N {
             sum.e12[i][j] += term.e12[i][j] * weight;
         }
-    }
-}
-
-/// A discrete Lagrangian and a discrete constraint that are written on every scalar, of one system.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandMade<'a, Sys, L, C> {
-    /// The system.
-    pub system: &'a Sys,
-    /// `L_d`.
-    pub lagrangian: L,
-    /// `w_d`.
-    pub constraint: C,
-}
-
-impl<Sys, L, C, const N: usize, const M: usize> Discretisation<N, M> for HandMade<'_, Sys, L, C>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
-    fn momenta(
-        &self,
-        _system: &dyn Mechanics<N, M>,
-        time: (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-        v: &[f64; N],
-    ) -> EndMomenta<N> {
-        let Self { system, lagrangian, .. } = self;
-        let slopes = lagrangian.slopes_along(system, time, q0, way, v);
-        let forces = lagrangian.forces_along(system, time, q0, way, v);
-        EndMomenta { slopes, forces: forces.map(|(minus, plus)| [minus, plus]) }
-    }
-
-    fn linearised(
-        &self,
-        _system: &dyn Mechanics<N, M>,
-        (t0, h): (f64, f64),
-        q0: &[f64; N],
-        v: &[f64; N],
-    ) -> (EndMomenta<N>, [[f64; N]; N]) {
-        let Self { system, lagrangian, .. } = self;
-        let Derivatives { d1, d2, d1d2, .. } = lagrangian.derivatives(*system, t0, h, q0, v);
-        let mut block = mapped(&d1d2, |row| mapped(&row, |x| h * x));
-        let (t, step, q, along) = (Dual::fixed(t0), Dual::fixed(h), mapped(q0, Dual::fixed), Dual::variables(v));
-        let forces: Option<([Dual<f64, N>; N], _)> = lagrangian.forces(*system, t, step, &q, &along);
-        if let Some((minus, _)) = &forces {
-            for i in 0..N {
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        let forces = forces.map(|ends| mapped(&<[_; 2]>::from(ends), |end| mapped(&end, |f| f.re)));
-        (EndMomenta { slopes: [d1, d2], forces }, block)
-    }
-
-    fn residual(&self, _system: &dyn Mechanics<N, M>, (t0, h): (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [f64; M] {
-        self.constraint.residual(self.system, t0, h, q0, v)
-    }
-
-    fn rows(
-        &self,
-        _system: &dyn Mechanics<N, M>,
-        (t0, h): (f64, f64),
-        q0: &[f64; N],
-        v: &[f64; N],
-    ) -> [Dual<f64, N>; M] {
-        self.constraint.linearised(self.system, t0, h, q0, v)
-    }
-
-    fn basis_along(
-        &self,
-        _system: &dyn Mechanics<N, M>,
-        time: (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-    ) -> Option<AdmissibleBasis<f64, N, M>> {
-        self.constraint.basis_along(self.system, time, q0, way)
-    }
-
-    #[cold]
-    fn rounded(
-        &self,
-        _system: &dyn Mechanics<N, M>,
-        (t0, h): (f64, f64),
-        q0: &[f64; N],
-        v: &[Rounded; N],
-    ) -> RoundedStep<N, M> {
-        let Self { system, lagrangian, constraint } = self;
-        let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), mapped(q0, Rounded::exact));
-        let [d1, _] = lagrangian.slopes(*system, t, step, &q, v);
-        let minus = lagrangian.forces(*system, t, step, &q, v).map(|(minus, _)| minus);
-        RoundedStep { d1, minus, residual: constraint.residual(*system, t, step, &q, v) }
     }
 }

@@ -7,7 +7,7 @@ use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
 use crate::settle::sup;
 use crate::{Discretisation, Mechanics, Newton, OneStep, Rules, StackUse, Stage, State, StepError, StepReport};
-use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid, from_fn, mapped};
+use lagrangian::{Alpha, Midpoint, NotAWeight, Rule, Trapezoid, from_fn, mapped};
 
 /// How the equations of a step are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -85,7 +85,7 @@ impl Dla {
     }
 
     /// The method of a quadrature rule for the discrete Lagrangian and one for the discrete constraint, in its best form.
-    pub fn new(lagrangian: impl Into<AnyRule>, constraint: impl Into<AnyRule>) -> Self {
+    pub fn new(lagrangian: impl Into<Rule>, constraint: impl Into<Rule>) -> Self {
         Self::of(Rules::new(lagrangian, constraint))
     }
 }

@@ -13,6 +13,7 @@
 mod allocation;
 mod common;
 mod geometry;
+mod parts;
 mod report;
 mod runs;
 mod stability;

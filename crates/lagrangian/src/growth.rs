@@ -1,14 +1,35 @@
-use crate::{LieBracket, RowSpace, Scalar, System, VectorField, from_fn, mapped};
+use crate::{Dual, RowSpace, Scalar, System, from_fn, mapped};
 use nalgebra::DMatrix;
 use thiserror::Error;
+
+/// A vector field on the configurations, `q' = X(q)`.
+trait VectorField<const N: usize> {
+    fn at<S: Scalar>(&self, q: &[S; N]) -> [S; N];
+}
+
+impl<X: VectorField<N>, const N: usize> VectorField<N> for &X {
+    fn at<S: Scalar>(&self, q: &[S; N]) -> [S; N] {
+        X::at(self, q)
+    }
+}
+
+/// The Lie bracket `[X, Y] = (dY/dq) X - (dX/dq) Y`; its derivatives are dual numbers over whatever carries `q`, so that it is a field again.
+struct LieBracket<X, Y>(X, Y);
+
+impl<X: VectorField<N>, Y: VectorField<N>, const N: usize> VectorField<N> for LieBracket<X, Y> {
+    fn at<S: Scalar>(&self, q: &[S; N]) -> [S; N] {
+        let along = |v: [S; N]| -> [Dual<S, 1>; N] { from_fn(|i| Dual { re: q[i], eps: [v[i]] }) };
+        let (of_y, of_x) = (self.1.at(&along(self.0.at(q))), self.0.at(&along(self.1.at(q))));
+        from_fn(|i| of_y[i].eps[0] - of_x[i].eps[0])
+    }
+}
 
 /// A field among those that span the admissible directions `ker A(q, t)`, at a fixed time.
 ///
 /// Where the system gives a basis it is one of that. Elsewhere it is the solution of `A X = 0` with one of the free
 /// coordinates moving at unit rate; which coordinates are free is chosen once, at one point, so that the field is smooth
 /// about it as long as the rank of `A` stays.
-#[derive(Debug)]
-pub struct AdmissibleField<'a, Sys, const N: usize, const M: usize> {
+struct AdmissibleField<'a, Sys, const N: usize, const M: usize> {
     system: &'a Sys,
     t: f64,
     index: usize,
@@ -69,10 +90,7 @@ impl<const N: usize> Growth<N> {
 }
 
 /// The fields that span the admissible directions near `q`. What an affine constraint imposes besides is left out.
-///
-/// # Errors
-/// [`GrowthError`].
-pub fn admissible_fields<'a, Sys: System<N, M>, const N: usize, const M: usize>(
+fn admissible_fields<'a, Sys: System<N, M>, const N: usize, const M: usize>(
     system: &'a Sys,
     t: f64,
     q: &[f64; N],

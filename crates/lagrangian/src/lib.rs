@@ -1,9 +1,8 @@
-//! What a constrained mechanical system is, and what its discrete Lagrangian is.
+//! What a constrained mechanical system is.
 //!
 //! A [`System`] is a Lagrangian and a velocity constraint `A(q, t) v + b(q, t) = 0`, each written once as a function
 //! generic in its [`Scalar`]. Everything else follows from the two: [momenta and energies](energy), the
-//! [equations of motion](Motion), and the derivatives `D1`, `D2`, `D1D2` of the [`DiscreteLagrangian`] that a
-//! variational integrator solves with. Derivatives are exact, by [dual](Dual) [numbers](HyperDual), never by differences.
+//! [equations of motion](Motion), and the derivatives of a discrete Lagrangian by a [`Rule`]. Derivatives are exact, by [dual](Dual) [numbers](HyperDual), never by differences.
 //!
 //! This crate knows no integrator and no particular system.
 
@@ -13,14 +12,12 @@ mod basis;
 mod bordered;
 mod bracket;
 mod by_hand;
-mod by_rule;
 mod called;
 mod classify;
 mod compensated;
 mod constraint_slopes;
 mod curvature;
 mod derived;
-mod discrete;
 mod dual;
 mod effect;
 mod factored;
@@ -34,7 +31,6 @@ mod lanes;
 pub mod linear;
 mod momentum;
 mod motion;
-mod noether;
 mod octaves;
 mod parametrised;
 mod piecewise;
@@ -53,11 +49,11 @@ mod second;
 mod seldom;
 mod shown;
 pub mod simd;
+mod slopes;
 mod smoothness;
 mod system;
 mod traced;
 mod twofold;
-mod vector_field;
 mod with;
 mod with_basis;
 
@@ -74,19 +70,17 @@ pub use classify::{
 pub use compensated::{added, two_sum};
 pub use constraint_slopes::ConstraintSlopes;
 pub use curvature::{add_position_curvature, add_reaction_curvature};
-pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian, gradients, on_line, residual_along};
 pub use dual::Dual;
 pub use effect::{Effect, EffectSlope};
 pub use factored::FactoredSaddle;
 pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};
-pub use growth::{AdmissibleField, Growth, GrowthError, admissible_fields, growth};
+pub use growth::{Growth, GrowthError, growth};
 pub use hessians::{second_at_node, second_in_both, second_in_place, second_in_velocity};
 pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
-pub use noether::{Conservation, CoordinateField, MomentumBalance, conservation, momentum_balance};
 pub use octaves::{octaves, of_octaves};
 pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
@@ -101,7 +95,7 @@ pub use rounded::Rounded;
 pub use rounding::{MotionRounding, bracket_rounding, reduced_rounding};
 pub use row_space::{Dependence, RowSpace};
 pub use rows::Rows;
-pub use rule::{Alpha, AnyRule, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
+pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::{
     Scalar, ScalarFunction, array, assigning_operators, called, from_fn, mapped, mul_add, sin_cos_wrapped,
@@ -109,10 +103,10 @@ pub use scalar::{
 pub use second::{AT_ONCE, TwiceDifferentiable, second_derivatives, seed};
 pub use seldom::{configuration_slope, velocity_slope};
 pub use shown::Shown;
+pub use slopes::{gradients, on_line, residual_along};
 pub use smoothness::Smoothness;
 pub use system::{Constraint, System, constraint_residual};
 pub use traced::Traced;
 pub use twofold::Twofold;
-pub use vector_field::{LieBracket, VectorField};
 pub use with::With;
 pub use with_basis::WithBasis;

@@ -3,9 +3,9 @@
 use crate::common::component;
 use approx::assert_relative_eq;
 use lagrangian::{
-    Alpha, Constraint, ConstraintSlopes, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Midpoint, Rule,
-    Scalar, Symmetrised, System, add_position_curvature, add_reaction_curvature, classify, constraint_residual,
-    mass_matrix, position_rows, second_in_both, second_in_place,
+    Constraint, ConstraintSlopes, Dual, HyperDual, Scalar, System, add_position_curvature, add_reaction_curvature,
+    classify, constraint_residual, mass_matrix, position_rows, residual_along, second_at_node, second_in_both,
+    second_in_place,
 };
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -67,77 +67,28 @@ fn same(found: &[Row; N], whole: &[Row; N], symmetric: bool) {
 
 type Whole = HyperDual<f64, N, N>;
 
-/// The mean Lagrangian of a rule, with the derivatives that follow from it alone.
-struct Automatic<R>(R);
-
-impl<R: Rule> DiscreteLagrangian<Long, N, 3> for Automatic<R> {
-    fn average<S: Scalar>(&self, system: &Long, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
-        DiscreteLagrangian::<Long, N, 3>::average(&self.0, system, t0, h, q0, v)
-    }
-}
-
-fn of_a_step<R: Rule + Copy>(rule: R, (t, h): (f64, f64), q0: &Row, v: &Row) {
-    // One evaluation, as it is for few coordinates.
-    let at: [Whole; N] = from_fn(|i| HyperDual::linear(q0[i], unit(i).map(|x| h * x), [0.0; N]));
-    let in_v: [Whole; N] = from_fn(|i| HyperDual::linear(v[i], unit(i).map(|x| -x), unit(i)));
-    let l = Automatic(rule).average(&Long, HyperDual::fixed(t), HyperDual::fixed(h), &at, &in_v);
-    let found = Automatic(rule).derivatives(&Long, t, h, q0, v);
-    assert_eq!((found.d1, found.d2), (l.e1, l.e2));
-    same(&found.d1d2, &l.e12.map(|row| row.map(|x| x / h)), false);
-
-    let mut nodes = Whole::fixed(0.0);
-    for (k, node) in rule.nodes().iter().enumerate() {
-        let part = h * node.alpha;
-        let q: [Whole; N] = from_fn(|i| {
-            HyperDual::linear(q0[i] + part * v[i], unit(i).map(|x| (h - part) * x), unit(i).map(|x| part * x))
-        });
-        let term = Long.lagrangian(HyperDual::fixed(t + part), &q, &in_v) * node.weight;
-        nodes = if k == 0 { term } else { nodes + term };
-    }
-    let found = DiscreteLagrangian::<Long, N, 3>::derivatives(&rule, &Long, t, h, q0, v);
-    assert_eq!((found.d1, found.d2), (nodes.e1, nodes.e2));
-    same(&found.d1d2, &nodes.e12.map(|row| row.map(|x| x / h)), false);
-
-    // The constraint, by the derivatives of its residual.
-    let rows = DiscreteConstraint::<Long, N, 3>::linearised(&rule, &Long, t, h, q0, v);
-    let w: [Dual<f64, N>; 3] =
-        rule.residual(&Long, Dual::fixed(t), Dual::fixed(h), &q0.map(Dual::fixed), &Dual::variables(v));
-    for k in 0..3 {
-        assert_relative_eq!(rows[k].re, w[k].re, epsilon = 1e-12, max_relative = 1e-12);
-        for i in 0..N {
-            assert_relative_eq!(rows[k].eps[i], w[k].eps[i], epsilon = 1e-12, max_relative = 1e-12);
-        }
-    }
-}
-
-/// Time and length, position and velocity, and the part where a rule takes its values.
-fn step() -> impl Strategy<Value = ((f64, f64), (Row, Row), f64)> {
-    let length = prop_oneof![0.01..1.0f64, -1.0..-0.01f64];
-    ((-2.0..2.0f64, length), (point(), point()), 0.0..1.0f64)
-}
-
-fn of_all_rules((at, (q0, v), alpha): ((f64, f64), (Row, Row), f64)) {
-    of_a_step(Midpoint, at, &q0, &v);
-    of_a_step(Alpha::new(alpha).unwrap(), at, &q0, &v);
-    of_a_step(Symmetrised::new(alpha).unwrap(), at, &q0, &v);
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4))]
-
-    #[test]
-    fn of_discrete_lagrangians(step in step()) {
-        of_all_rules(step);
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    #[ignore = "slow"]
-    fn of_discrete_lagrangians_at_length(step in step()) {
-        of_all_rules(step);
+    fn at_a_node(t in -2.0..2.0f64, back in -1.0..1.0f64, ahead in -1.0..1.0f64, q in point(), v in point()) {
+        let along = |by: f64| move |i: usize| unit(i).map(|x| by * x);
+        let in_q: [Whole; N] = from_fn(|i| HyperDual::linear(q[i], along(back)(i), along(ahead)(i)));
+        let in_v: [Whole; N] = from_fn(|i| HyperDual::linear(v[i], along(-1.0)(i), unit(i)));
+        let whole = Long.lagrangian(HyperDual::fixed(t), &in_q, &in_v);
+        let found = second_at_node(&Long, t, &q, &v, back, ahead);
+        assert_eq!((found.re, found.e1, found.e2), (whole.re, whole.e1, whole.e2));
+        same(&found.e12, &whole.e12, false);
+
+        let rows = residual_along(&Long, t, &q, &v, ahead);
+        let in_q: [Dual<f64, N>; N] = from_fn(|i| Dual { re: q[i], eps: along(ahead)(i) });
+        let w: [Dual<f64, N>; 3] = constraint_residual(&Long, Dual::fixed(t), &in_q, &Dual::variables(&v));
+        for k in 0..3 {
+            assert_relative_eq!(rows[k].re, w[k].re, epsilon = 1e-12, max_relative = 1e-12);
+            for i in 0..N {
+                assert_relative_eq!(rows[k].eps[i], w[k].eps[i], epsilon = 1e-12, max_relative = 1e-12);
+            }
+        }
     }
 
     #[test]

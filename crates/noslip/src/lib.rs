@@ -8,7 +8,7 @@
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
 //! | give a body an attitude that ends nowhere; refuse steps near where other coordinates end | [`Attitude`], [`InChart`] |
 //! | add what acts on a body; derive a basis of the admissible velocities | [`Effect`], [`With`]; [`WithBasis`] |
-//! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
+//! | ask what its constraints let it reach | [`lagrangian::growth`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`]; by any method, [`Subject`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
@@ -33,16 +33,15 @@ pub use npz::write_npz;
 #[cfg(feature = "assembly")]
 pub use assembly;
 pub use dla::{
-    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite,
+    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, DiscreteLagrangian, Dla, Equations, Event, Form, Hermite,
     Hint, History, InChart, Mechanics, Mechanism, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
     Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Subject, Trajectory, View,
     Watch, consistent_start, slip,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
-    Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar,
-    ScalarFunction, Symmetrised, System, Trapezoid, With, WithBasis, classify, constraint_residual, energy,
-    mass_matrix, momentum, vectorized,
+    self, AdmissibleBasis, Alpha, Attitude, Constraint, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion,
+    MotionError, Parametrised, Reduced, Rule, Scalar, ScalarFunction, System, Trapezoid, With, WithBasis, classify,
+    constraint_residual, energy, mass_matrix, momentum, vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 

@@ -41,7 +41,7 @@ pub enum SleighError {
     },
     /// What is wanted needs a system of a few coordinates, and this is a train of many.
     #[error(
-        "the scene has `trailers`, and this command has no trains: `run`, `compare` and `precision` have trains, with dla, dla4, dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2"
+        "the scene has `trailers`, and this command has no trains: `run`, `compare` and `precision` have trains, with dla, dla4, dla6 and dla8"
     )]
     Train,
     /// A path cannot be followed.

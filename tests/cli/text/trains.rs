@@ -85,7 +85,7 @@ fn train_is_text(duration: f64) {
     let run = |line: &str| folder.json(&format!("run {line} --duration {duration} --json"));
     folder.write("train.toml", TRAIN);
     folder.write("words.toml", format!("{WORDS}{}", start()));
-    for method in ["dla", "lobatto5"] {
+    for method in ["dla", "dla8"] {
         let train = run(&format!("train.toml --method {method}"));
         let words = run(&format!("words.toml --method {method}"));
         let (first, last, text) = (&train["final"], &train["last"], &words["final"]);
@@ -103,13 +103,13 @@ fn train_is_text(duration: f64) {
         assert!(train["constraint"]["max"].as_f64().unwrap() < 1e-13, "{}", train["constraint"]);
     }
     // The table does work, and the balance of the energy counts it.
-    let train = run("train.toml --method lobatto5");
+    let train = run("train.toml --method dla8");
     let energy = &train["energy"];
     assert!(energy["work"].as_f64().unwrap().abs() > 1e-3, "{energy}");
     assert!(energy["max_error"].as_f64().unwrap() < 1e-6, "{energy}");
     // Without the table it is another motion.
     folder.write("still.toml", TRAIN.replace("rate = 0.3", "rate = 0.0"));
-    let still = run("still.toml --method lobatto5");
+    let still = run("still.toml --method dla8");
     let apart = (still["last"]["x"].as_f64().unwrap() - train["last"]["x"].as_f64().unwrap()).abs();
     assert!(apart > 0.01 * duration / 4.0, "{apart:e}");
 }

@@ -12,7 +12,7 @@ pub use kind::MethodKind;
 pub use table::{METHODS, MethodInfo};
 
 use crate::Substeps;
-use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid};
+use lagrangian::{Alpha, Midpoint, NotAWeight, Rule, Trapezoid};
 use thiserror::Error;
 
 /// A method, ready to integrate.
@@ -148,7 +148,7 @@ impl Method {
 
     /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.
     #[must_use]
-    pub fn rule(&self) -> AnyRule {
+    pub fn rule(&self) -> Rule {
         match self.info.kind {
             MethodKind::DlaTrapezoid => Trapezoid.into(),
             MethodKind::DlaAlpha => self.alpha.into(),

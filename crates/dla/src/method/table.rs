@@ -87,7 +87,6 @@ macro_rules! lobatto {
             ", self-adjoint, on any system",
             "Jay 2003, BIT 43, 93-106"
         )
-        .for_assemblies()
     };
 }
 
@@ -200,8 +199,7 @@ pub const METHODS: &[MethodInfo] = &[
         ENERGY,
         "discrete gradient method on the dual of the distribution, averaged gradient, self-adjoint",
         "Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019, J. Nonlinear Sci. 29, 1523-1562",
-    )
-    .for_assemblies(),
+    ),
     energy!("energy4", 2, 4),
     energy!("energy6", 3, 6).without_tangent(NOT_HERE),
     energy!("energy8", 4, 8).without_tangent(NOT_HERE),

@@ -1,7 +1,7 @@
 use super::equations::{StepUnknowns, constrained, difference};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Dla;
-use lagrangian::{Gradients, Rule, Scalar, Seeded, from_fn, mapped};
+use lagrangian::{Gradients, Scalar, Seeded, from_fn, mapped};
 
 /// With multipliers, in the unknowns `(v, lambda, v1, mu)`: [`Dla`] solves the same equations in whichever form.
 ///

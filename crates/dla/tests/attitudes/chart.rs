@@ -3,7 +3,7 @@
 use crate::attitudes::angles::{AngleBall, CHART};
 use crate::attitudes::tools::largest;
 use crate::support::{Five, Four, Six};
-use dla::{Composition, Dla, Gauss, Hint, InChart, Lobatto, OneStep, State, StepError, Substepping, View};
+use dla::{Composition, Dla, Gauss, Hint, InChart, Lobatto, OneStep, State, StepError, View};
 use lagrangian::System;
 use models::{ChaplyginBall, Model, Suslov, TurntableBall};
 
@@ -131,21 +131,6 @@ fn no_step_passes_the_end() {
 #[ignore = "slow"]
 fn no_step_passes_the_end_in_full() {
     none_passes_the_end(1);
-}
-
-/// A step that is too long for what is left of the coordinates is made in parts as far as they go.
-#[test]
-fn parts_of_a_step() {
-    let (q, v) = BALL.level([0.0, 1.0, 0.0]);
-    let run = |halvings: u32| {
-        let mut method = Substepping::new(guarded(Dla::midpoint()), halvings);
-        largest(&SYSTEM, &mut method, (q, v), (0.7, 10), |_| [0.0]).1.unwrap_err()
-    };
-    let (whole, parts) = (run(0), run(8));
-    println!("{whole}; {parts}");
-    assert_eq!(whole.source.hint(), Some(Hint::ShorterStep { part: 0.5 }));
-    assert_eq!(parts.source.hint(), Some(Hint::OtherCoordinates));
-    assert_eq!([whole.step, parts.step], [2, 3], "{whole}; {parts}");
 }
 
 /// The models have coordinates without an end.

@@ -9,10 +9,10 @@ mod hints;
 mod lanes;
 pub(crate) mod observers;
 mod own_steps;
+mod predicted;
 mod recommend;
 mod round_well;
 pub(crate) mod scripted;
-pub(crate) mod substeps;
 mod trials;
 mod units;
 

@@ -1,7 +1,6 @@
-//! A method that does what it is told, and what is built on methods: parts of steps, memories.
+//! A method that does what it is told, and what is built on methods: memories.
 
-use crate::support::One;
-use dla::{Composition, Dla, Mechanics, OneStep, State, StepError, StepReport, Substepping};
+use dla::{Composition, Dla, Mechanics, OneStep, State, StepError, StepReport};
 use lagrangian::{Constraint, Scalar, System};
 
 /// A point on a line, which methods that do what they are told ask for nothing.
@@ -51,33 +50,11 @@ pub(crate) fn start() -> State<1> {
     State::new([0.0], [1.0], [false])
 }
 
-/// Two eighths, and then parts twice as long wherever the grid of the longer ones is met.
-#[test]
-fn parts_grow_on_their_grid() {
-    let (mut method, mut state) = (Substepping::new(Short::default(), 4), start());
-    let report = method.step(&One::from(Point), 0.0, 1.0, &mut state).unwrap();
-    assert_eq!(method.method.made, [0.0, 0.125, 0.125, 0.125, 0.25, 0.25, 0.5, 0.5]);
-    assert_eq!((state.q()[0], report.iterations, method.divided()), (1.0, 4, 1));
-    // Impulses add up, and so does the work from where it is known.
-    assert_eq!(report, StepReport { impulses: [[1.0], [2.0]], iterations: 4, work: Some(0.75) });
-    // A step of three halves does not end on the grid of its wholes.
-    let (mut method, mut state) = (Substepping::new(Short::default(), 4), start());
-    OneStep::<1, 1>::step(&mut method, &One::from(Point), 0.0625, 1.5, &mut state).unwrap();
-    assert_eq!(method.method.made, [0.0625, 0.09375, 0.15625, 0.09375, 0.25, 0.1875, 0.4375, 0.375, 0.8125, 0.75]);
-    // Not short enough.
-    let mut method = Substepping::new(Short::default(), 2);
-    assert_eq!(OneStep::<1, 1>::step(&mut method, &One::from(Point), 0.0, 1.0, &mut state), Err(StepError::Branch));
-}
-
 #[test]
 fn memories_pass_through() {
     let given = [0.5, 0.25];
-    let method = Short { made: given.to_vec() };
-    let (mut parts, mut composed) = (Substepping::new(Short::default(), 3), Composition::suzuki4(Short::default()));
-    OneStep::<1, 1>::recall(&mut parts, &given, &start());
+    let mut composed = Composition::suzuki4(Short::default());
     OneStep::<1, 1>::recall(&mut composed, &given, &start());
-    assert_eq!(parts.method, method);
-    assert_eq!(OneStep::<1, 1>::memory(&parts), given);
     assert_eq!(OneStep::<1, 1>::memory(&composed), given);
     // What is a map has none.
     assert!(OneStep::<3, 1>::memory(&Dla::midpoint()).is_empty());

@@ -9,7 +9,7 @@ use crate::constraints::{classes, driven as led, holonomic, redundant, starts};
 use crate::energy::{order, refusals, systems as energy};
 use crate::lobatto::{failures as dropping, systems as lobatto};
 use crate::rest::{disk, systems as rest};
-use crate::runs::{counter_example, events, failures, observers, scripted, substeps};
+use crate::runs::{counter_example, events, failures, observers, scripted};
 use crate::systems::{alternating, continued, degenerate, driven, lanes, models as small};
 use crate::{corners, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
@@ -76,7 +76,6 @@ shape! {
         Line: drive::Line,
         Nowhere: starts::Nowhere,
         Point: scripted::Point,
-        Contradiction: substeps::Contradiction,
         Led: observers::Led,
     }
 }

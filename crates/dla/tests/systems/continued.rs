@@ -3,7 +3,7 @@
 use crate::support::{ByHand, Four, Free, Three, ThreeTwo};
 use crate::systems::models::{Disk, Hyperbolic, Kinetic, Oscillator, Particle, Pushed};
 use dla::{Dla, Form, OneStep, State};
-use lagrangian::{Constraint, Scalar, Symmetrised, System};
+use lagrangian::{Constraint, Scalar, System};
 use proptest::prelude::*;
 use sleigh::{Sleigh, SleighState};
 
@@ -50,11 +50,9 @@ fn check_all<Sys: System<N, M>, const N: usize, const M: usize>(
     place: ([f64; N], [f64; N]),
     at: (f64, f64),
 ) -> Result<(), TestCaseError> {
-    let symmetrised = Symmetrised::new(0.2).unwrap();
     check(system, Dla::midpoint(), place, at)?;
     check(system, Dla::midpoint().solved(Form::Multipliers), place, at)?;
-    check(system, Dla::trapezoid(), place, at)?;
-    check(system, Dla::new(symmetrised, symmetrised), place, at)
+    check(system, Dla::trapezoid(), place, at)
 }
 
 /// Numbers for the places and the velocities, time and length of a step, a damping.

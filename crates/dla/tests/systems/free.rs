@@ -4,18 +4,16 @@ use crate::support::{Four, Free, Three};
 use crate::systems::models::{Disk, Hyperbolic, Kinetic, Oscillator, Particle};
 use crate::systems::tools::{assert_order, assert_slope, errors, forms, run};
 use dla::Dla;
-use lagrangian::{Alpha, Midpoint, Symmetrised, Trapezoid};
+use lagrangian::{Alpha, Midpoint, Trapezoid};
 
 #[test]
 fn a_particle_on_its_closed_form() {
     let (system, end) = (Particle::FREE, 3.0);
     let (particle, exact) = (Three::from(system), |t| system.exact(t));
-    let symmetrised = Symmetrised::new(0.2).unwrap();
     for (form, method) in forms(Dla::midpoint()) {
         assert_order(form, errors(&particle, method, end, exact), 2.0);
     }
     assert_order("trapezoid", errors(&particle, Dla::trapezoid(), end, exact), 2.0);
-    assert_order("symmetrised", errors(&particle, Dla::new(symmetrised, symmetrised), end, exact), 2.0);
 }
 
 /// The discrete constraint need not be that of the discrete Lagrangian's rule (Cortes and Martinez 2001).
@@ -31,14 +29,11 @@ fn mixed_rules_are_of_second_order() {
         assert_order(name, basis, expected);
         basis[3][1]
     }
-    let symmetrised = Symmetrised::new(0.2).unwrap();
     let mut all = [
         order("midpoint", Dla::midpoint(), 2.0),
         order("trapezoid", Dla::trapezoid(), 2.0),
         order("midpoint, trapezoid", Dla::new(Midpoint, Trapezoid), 2.0),
         order("trapezoid, midpoint", Dla::new(Trapezoid, Midpoint), 2.0),
-        order("symmetrised", Dla::new(symmetrised, symmetrised), 2.0),
-        order("symmetrised, midpoint", Dla::new(symmetrised, Midpoint), 2.0),
     ];
     all.sort_by(f64::total_cmp);
     assert!(all.windows(2).all(|pair| pair[1] > 1.001 * pair[0]), "the rules differ: {all:?}");

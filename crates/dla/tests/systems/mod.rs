@@ -8,4 +8,5 @@ mod forms;
 mod free;
 pub(crate) mod lanes;
 pub(crate) mod models;
+mod rules;
 mod tools;

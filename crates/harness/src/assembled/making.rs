@@ -1,5 +1,5 @@
 use super::meter::AssemblyMeter;
-use super::parts::{Parted, in_parts, resolves, shorter};
+use super::parts::{Parted, in_parts, resolves};
 use super::pieces::{AssemblyPieces, PieceStep};
 use super::step::{AssemblyStep, LastNode};
 use super::{Assembled, AssemblyNodes};
@@ -91,24 +91,22 @@ impl<'a, 'n> Making<'a, 'n> {
                 meter.jumped(assembly, t0, &before, state);
                 before.copy_from(state);
             }
-            let whole = method.step(assembly, t0, h, state).and_then(|report| {
+            let whole = method.step(assembly, t0, h, state).and_then(|iterations| {
                 // Only a step that may be divided is asked whether it resolves the motion.
                 limits.map_or(Ok(()), |_| resolves(assembly, method, (t0, h), (&before, state)))?;
-                Ok(report)
+                Ok(iterations)
             });
             *seconds += clock.elapsed().as_secs_f64();
             let Parted { last, iterations, parts } = match (whole, *limits) {
-                (Ok(report), _) => {
-                    let iterations = report.iterations;
+                (Ok(iterations), _) => {
                     let step = AssemblyStep { k, t0, h, before: &before, after: state };
                     let last = match look(method, step) {
                         ControlFlow::Continue(()) => {
-                            meter.over(assembly, (t0, &before), (end, state), &report);
+                            meter.over(assembly, (t0, &before), (end, state));
                             None
                         }
                         ControlFlow::Break((t, last)) => {
-                            let shorter = shorter(assembly, method, (t0, t), &before, report);
-                            meter.over(assembly, (t0, &before), (t, &last), &shorter);
+                            meter.over(assembly, (t0, &before), (t, &last));
                             Some((t, last))
                         }
                     };

@@ -2,7 +2,7 @@ use super::{AssemblyNode, AssemblyNodes};
 use crate::{
     Blocks, Drift, Energies, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend,
 };
-use assembly::{Assembly, AssemblyError, AssemblyReport, AssemblyRunError, AssemblyState, AssemblyWork};
+use assembly::{Assembly, AssemblyError, AssemblyRunError, AssemblyState, AssemblyWork};
 use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
 
@@ -72,14 +72,8 @@ impl<'a> AssemblyMeter<'a> {
     }
 
     /// Adds the work over a step, or a part of one, from one time and state to another.
-    pub(super) fn over(
-        &mut self,
-        assembly: &Assembly,
-        before: (f64, &AssemblyState),
-        after: (f64, &AssemblyState),
-        report: &AssemblyReport,
-    ) {
-        self.work.step(assembly, before, after, report);
+    pub(super) fn over(&mut self, assembly: &Assembly, before: (f64, &AssemblyState), after: (f64, &AssemblyState)) {
+        self.work.step(assembly, before, after);
     }
 
     /// Sees the state where a piece begins at the time `t`: an impulse has done the work by which the energy is another than `before`.

@@ -18,7 +18,6 @@ pub use saved::run_assembly_saved;
 use crate::{METHODS, Method, MethodKind, Progress, Record};
 use assembly::{
     Assembly, AssemblyError, AssemblyMethod, AssemblyRunError, AssemblyState, Solver, SparseComposition, SparseDla,
-    SparseEnergy, SparseLobatto,
 };
 use dla::{Close, Schedule};
 use events::ended;
@@ -105,8 +104,6 @@ pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn A
         MethodKind::Composed(order) => {
             SparseComposition::new(assembly, best, order).map(|method| Box::new(method) as _)
         }
-        MethodKind::Lobatto(stages) => SparseLobatto::new(assembly, best, stages).map(|method| Box::new(method) as _),
-        MethodKind::Energy(1) => SparseEnergy::new(assembly, best).map(|method| Box::new(method) as _),
         _ => Err(AssemblyError::Unsupported { reason: OTHERS.as_str() }),
     }
 }
@@ -139,8 +136,7 @@ pub fn assembly_end(
 
 /// Makes a run of an assembly and measures it, keeping every `every`-th node and the last.
 ///
-/// The time is that of the steps alone. Work is that of the method's own forces where it knows it, else integrated along the
-/// polynomial of degree five of each step, which is of order 6 ([`assembly::AssemblyWork`]). A run that fails gives the record of its valid part.
+/// The time is that of the steps alone. Work is integrated along the polynomial of degree five of each step, which is of order 6 ([`assembly::AssemblyWork`]). A run that fails gives the record of its valid part.
 pub fn run_assembly(
     assembly: &Assembly,
     method: &Method,

@@ -1,6 +1,6 @@
 use super::meter::AssemblyMeter;
 use super::step::{AssemblyStep, LastNode};
-use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState};
+use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyState};
 use dla::{Halved, Substeps, Undivided};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -30,37 +30,24 @@ pub(super) fn in_parts(
     let (mut last, mut iterations, mut parts) = (None, 0, 0);
     let made = limits.divide((t, h), failure, AssemblyError::may_hold_in_parts, |(t, h), _| {
         start.copy_from(state);
-        let report = method.step(assembly, t, h, state)?;
+        let made = method.step(assembly, t, h, state)?;
         if let Err(failure) = resolves(assembly, method, (t, h), (&start, state)) {
             state.copy_from(&start);
             return Err(failure);
         }
-        (iterations, parts) = (iterations + report.iterations, parts + 1);
+        (iterations, parts) = (iterations + made, parts + 1);
         if let ControlFlow::Break((end, found)) =
             look(method, AssemblyStep { k, t0: t, h, before: &start, after: state })
         {
-            let shorter = shorter(assembly, method, (t, end), &start, report);
-            meter.over(assembly, (t, &start), (end, &found), &shorter);
+            meter.over(assembly, (t, &start), (end, &found));
             last = Some((end, found));
             return Ok(ControlFlow::Break(()));
         }
-        meter.over(assembly, (t, &start), (t + h, state), &report);
+        meter.over(assembly, (t, &start), (t + h, state));
         Ok(if stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
     let given_up = made.is_break() && last.is_none();
     Ok((!given_up).then_some(Parted { last, iterations, parts }))
-}
-
-/// What a step did that is shortened to end at an event, between two times; without its work where it cannot be made.
-pub(super) fn shorter(
-    assembly: &Assembly,
-    method: &mut dyn AssemblyMethod,
-    (t, end): (f64, f64),
-    before: &AssemblyState,
-    whole: AssemblyReport,
-) -> AssemblyReport {
-    let unknown = AssemblyReport { work: None, ..whole };
-    method.step(assembly, t, end - t, &mut before.clone()).unwrap_or(unknown)
 }
 
 /// Whether a step from time `t` to `t + h` resolves the motion: see [`Halved`].

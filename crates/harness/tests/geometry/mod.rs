@@ -1,4 +1,4 @@
-//! The geometry of the sleigh and of other systems: brackets, symmetries, phases, steady motions, parking.
+//! The geometry of the sleigh and of other systems: brackets, phases, steady motions, parking.
 
 mod attitude;
 mod brackets;
@@ -7,7 +7,6 @@ mod exchange;
 mod gaits;
 mod parking;
 mod phase;
-mod symmetries;
 
 use dla::{Dla, Gauss, Observer, OneStep, Piece, Schedule, State, drive_part, piece_by_piece};
 use lagrangian::{Piecewise, System};

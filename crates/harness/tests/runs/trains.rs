@@ -45,8 +45,8 @@ fn check_measured(count: u64) {
         let method = Method::named(name, None).unwrap();
         run_assembly(&train.assembly, &method, &schedule, &start, 10, &mut ())
     };
-    let [second, fourth, staged, kept] = ["dla", "dla4", "lobatto3", "energy2"].map(run);
-    for run in [&second, &fourth, &staged, &kept] {
+    let [second, fourth] = ["dla", "dla4"].map(run);
+    for run in [&second, &fourth] {
         let record = &run.record;
         let nodes = count as usize / 10 + 1;
         assert_eq!((record.steps, run.nodes.len(), record.samples.len()), (count, nodes, nodes));
@@ -57,7 +57,6 @@ fn check_measured(count: u64) {
     }
     // Simpson's rule leaves 1e-8 of the work; order 2 leaves 1e-4.
     assert!(fourth.record.energy.max_error < 1e-6, "{:e}", fourth.record.energy.max_error);
-    assert!(staged.record.energy.max_error < 1e-6, "{:e}", staged.record.energy.max_error);
     assert!(second.record.energy.max_error > fourth.record.energy.max_error);
 }
 
@@ -127,7 +126,7 @@ fn events_along_a_train_in_full() {
 fn check_events(places: [f64; 2]) {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
-    for name in ["dla4", "energy2"] {
+    for name in ["dla", "dla4"] {
         let method = Method::named(name, None).unwrap();
         let x = |value: f64| move |_: f64, state: &AssemblyState| state.unwrapped(0) - value;
         let events = [AssemblyEvent::new("first", false, x(places[0])), AssemblyEvent::new("last", true, x(places[1]))];
@@ -174,7 +173,7 @@ fn a_saved_run_goes_on_as_if_it_had_not_stopped_in_full() {
 fn check_saved(count: u64, every: u64) {
     let (train, schedule) = (train(), steps(count));
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
-    for name in ["dla", "lobatto3", "energy2"] {
+    for name in ["dla", "dla4"] {
         let method = Method::named(name, None).unwrap();
         let whole = run_assembly(&train.assembly, &method, &schedule, &start, 10, &mut ());
         let identity = Checkpoint::of([("method", name.to_owned())]);
@@ -291,7 +290,7 @@ fn a_long_step_of_a_train_is_divided_so_far() {
 fn long_steps_of_trains_are_made_in_parts_at_length() {
     let ((train, start), long) = (turning(), seconds(6));
     let right = short_steps(0.005, 1200);
-    for name in ["dla", "dla4", "lobatto3", "energy2"] {
+    for name in ["dla", "dla4"] {
         let (method, run) = in_parts(name, &long, &right);
         let mut files = Vec::new();
         let mut save = |made: &Checkpoint| files.push(made.clone());

@@ -2,11 +2,8 @@
 
 use crate::common::{midpoint_forms, sleighs, starts, state_of};
 use approx::assert_relative_eq;
-use dla::{Dla, OneStep};
-use lagrangian::{
-    AnyRule, DiscreteConstraint, DiscreteLagrangian, Midpoint, Motion, Rule, System, Trapezoid, constraint_residual,
-    momentum,
-};
+use dla::{Discretisation, Dla, OneStep};
+use lagrangian::{Midpoint, Motion, System, Trapezoid, constraint_residual, momentum};
 use proptest::prelude::*;
 use sleigh::{CentreOfMass, ClosedMap};
 
@@ -44,13 +41,13 @@ proptest! {
     fn the_equations_hold(sleigh in sleighs(), start in starts(), h in 0.001..0.3f64) {
         prop_assume!(step_fits(&sleigh, &start, h));
         let (q, v) = start.to_coordinates();
-        check(&sleigh, Midpoint, Midpoint, q, v, h)?;
-        check(&sleigh, Trapezoid, Trapezoid, q, v, h)?;
-        check(&sleigh, Trapezoid, Midpoint, q, v, h)?;
+        check(&sleigh, Dla::midpoint(), q, v, h)?;
+        check(&sleigh, Dla::trapezoid(), q, v, h)?;
+        check(&sleigh, Dla::new(Trapezoid, Midpoint), q, v, h)?;
         let com = CentreOfMass(sleigh);
         let (q, v) = com.from_blade(&q, &v);
-        check(&com, Midpoint, Midpoint, q, v, h)?;
-        check(&com, Midpoint, Trapezoid, q, v, h)?;
+        check(&com, Dla::midpoint(), q, v, h)?;
+        check(&com, Dla::new(Midpoint, Trapezoid), q, v, h)?;
     }
 
     /// The mean constraint force of a step tends to the multiplier of the continuous motion, `m I u omega / J`.
@@ -69,28 +66,29 @@ proptest! {
     }
 }
 
-fn check<Sys, L, C>(system: &Sys, l: L, c: C, q0: [f64; 3], v0: [f64; 3], h: f64) -> Result<(), TestCaseError>
-where
-    Sys: System<3, 1>,
-    L: Rule + Into<AnyRule> + Copy,
-    C: Rule + Into<AnyRule> + Copy,
-{
+fn check<Sys: System<3, 1>>(
+    system: &Sys,
+    mut method: Dla,
+    q0: [f64; 3],
+    v0: [f64; 3],
+    h: f64,
+) -> Result<(), TestCaseError> {
     let start = dla::State::new(q0, v0, [false; 3]);
     let mut state = start;
-    let report = Dla::new(l, c).step(system, 0.0, h, &mut state).unwrap();
+    let report = method.step(system, 0.0, h, &mut state).unwrap();
     let q1 = *state.q();
     let v: [f64; 3] = std::array::from_fn(|i| (q1[i] - q0[i]) / h);
     // The increment was rounded relative to positions up to 15.
     let rounding = 1e-14 / h;
-    prop_assert!(c.residual(system, 0.0, h, &q0, &v)[0].abs() <= rounding);
+    prop_assert!(method.rules.residual(system, (0.0, h), &q0, &v)[0].abs() <= rounding);
     prop_assert!(constraint_residual(system, h, &q1, state.v())[0].abs() <= 1e-14);
-    let d = l.derivatives(system, 0.0, h, &q0, &v);
+    let [d1, d2] = method.rules.momenta(system, (0.0, h), &q0, &v, &v).slopes;
     let (p0, p1) = (momentum(system, 0.0, &q0, &v0), momentum(system, h, &q1, state.v()));
     let (a0, a1) = (system.constraint(0.0, &q0).0, system.constraint(h, &q1).0);
-    let size = 1.0 + d.d1.iter().chain(&d.d2).fold(0.0f64, |m, x| m.max(x.abs()));
+    let size = 1.0 + d1.iter().chain(&d2).fold(0.0f64, |m, x| m.max(x.abs()));
     for i in 0..3 {
-        let first = p0[i] + d.d1[i] + a0[0][i] * report.impulses[0][0];
-        let second = p1[i] - d.d2[i] - a1[0][i] * report.impulses[1][0];
+        let first = p0[i] + d1[i] + a0[0][i] * report.impulses[0][0];
+        let second = p1[i] - d2[i] - a1[0][i] * report.impulses[1][0];
         prop_assert!(first.abs() <= rounding * size * 10.0, "first, {i}: {first:e}");
         prop_assert!(second.abs() <= rounding * size * 10.0, "second, {i}: {second:e}");
     }

@@ -1,8 +1,9 @@
 //! The free sleigh, in steps that nearly every method refuses, against the motion in closed form.
 
-use crate::parts::{BAR, EACH, Run, by, by_each, free, made, sleigh};
-use dla::{Composition, Schedule, State, StepError, Substepping, Substeps, drive};
-use sleigh::{ClosedMap, Exact, SleighState};
+use crate::parts::{BAR, EACH, Run, by, by_each, request, sleigh};
+use dla::{StepError, Substeps};
+use harness::Method;
+use sleigh::{Exact, SleighState};
 
 /// The whole motion at its end; places relative to the way.
 fn ends_right(label: &str, run: &Run, exact: &Exact, (step, steps): (f64, u64)) {
@@ -38,10 +39,10 @@ fn turning(methods: &[&str], turn_rates: &[f64], steps: u64) {
         let start = SleighState { speed: 0.1, turn_rate, ..SleighState::default() };
         let exact = Exact::new(&sleigh(0.5), &start).unwrap();
         for name in methods {
-            let run = by(name, &free(0.5), &start, (1.0, steps));
+            let run = by(name, &sleigh(0.5), &start, (1.0, steps));
             ends_right(&format!("{name}, h omega = {turn_rate}"), &run, &exact, (1.0, steps));
             // Only the first of them can be made whole by any method.
-            assert!(turn_rate < 3.0 || run.divided > 0, "{name} {turn_rate}");
+            assert!(turn_rate < 3.0 || run.substeps.divided > 0, "{name} {turn_rate}");
         }
     }
 }
@@ -52,7 +53,7 @@ fn against_the_line(methods: &[&str], growths: &[f64]) {
         let (start, step) = (SleighState { speed: -1.0, turn_rate: 1e-3, ..SleighState::default() }, growth / 0.4);
         let exact = Exact::new(&sleigh(0.5), &start).unwrap();
         for name in methods {
-            let run = by(name, &free(0.5), &start, (step, 20));
+            let run = by(name, &sleigh(0.5), &start, (step, 20));
             ends_right(&format!("{name}, h c u = -{growth}"), &run, &exact, (step, 20));
             // Where the spin is not nothing beside the speed, it has its sign.
             let spins = run.seen(|state| state.turn_rate);
@@ -68,14 +69,14 @@ fn quarters_of_hours(runs: impl Iterator<Item = (&'static str, Run)>) {
     let exact = Exact::new(&sleigh(0.5), &AHEAD).unwrap();
     for (name, run) in runs {
         ends_right(&format!("{name}, h = 1e3 s"), &run, &exact, (1e3, 10));
-        assert!(run.divided > 0 && run.parts < 4000, "{name}: {}", run.parts);
+        assert!(run.substeps.divided > 0 && run.substeps.parts < 4000, "{name}: {}", run.substeps.parts);
     }
 }
 
 #[test]
 #[ignore = "slow"]
 fn step_lengths_in_full() {
-    quarters_of_hours(by_each(&free(0.5), &AHEAD, (1e3, 10)));
+    quarters_of_hours(by_each(&sleigh(0.5), &AHEAD, (1e3, 10)));
 }
 
 /// Steps of a quarter of an hour and of thirty thousand years. The parts grow as the motion becomes straight, so that there are
@@ -83,16 +84,13 @@ fn step_lengths_in_full() {
 #[test]
 fn step_lengths() {
     let (start, exact) = (AHEAD, Exact::new(&sleigh(0.5), &AHEAD).unwrap());
-    quarters_of_hours([("dla", made(&free(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e3, 10)))].into_iter());
-    let run = made(&free(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e12, 10));
+    quarters_of_hours([("dla", by("dla", &sleigh(0.5), &start, (1e3, 10)))].into_iter());
+    let run = by("dla", &sleigh(0.5), &start, (1e12, 10));
     ends_right("dla, h = 1e12 s", &run, &exact, (1e12, 10));
-    assert!(run.divided > 0 && run.parts < 1000, "{}", run.parts);
+    assert!(run.substeps.divided > 0 && run.substeps.parts < 1000, "{}", run.substeps.parts);
     // What would be taken for the motion: the mean spin is nothing, and no node says so but by its own.
-    let (q, v) = start.to_coordinates();
-    let mut state = State::new(q, v, [false, false, true]);
-    let schedule = Schedule { t0: 0.0, step: 1e12, steps: 10 };
-    drive::<_, _, 3, 1>(&free(0.5), &mut ClosedMap::of(sleigh(0.5)), &schedule, &mut state, ()).unwrap();
-    assert!((state.unwrapped()[2] - exact.at(1e13).heading).abs() > 0.5);
+    let whole = harness::run(&sleigh(0.5), &Method::named("dla", None).unwrap(), &request(&start, (1e12, 10)), &mut ());
+    assert!((whole.q[2] - exact.at(1e13).heading).abs() > 0.5);
 }
 
 /// A composition goes back within its step, against the line that then repels; no part of it may be longer than a few seconds,
@@ -100,15 +98,10 @@ fn step_lengths() {
 #[test]
 fn what_needs_too_many_parts_says_so() {
     let start = SleighState { speed: 1.0, turn_rate: 0.3, ..SleighState::default() };
-    let (q, v) = start.to_coordinates();
-    let mut state = State::new(q, v, [false, false, true]);
-    let before = state;
-    let method = Composition::suzuki4(ClosedMap::of(sleigh(0.5)));
-    let mut method = Substepping::within(method, Substeps::new(53, 10_000)).resolving();
-    let schedule = Schedule { t0: 0.0, step: 1e12, steps: 1 };
-    let error = drive::<_, _, 3, 1>(&free(0.5), &mut method, &schedule, &mut state, ()).unwrap_err();
-    let why = method.undivided().unwrap();
-    assert_eq!((why.tried, state, error.source), (10_000, before, why.source));
+    let method = Method::named("dla4", None).unwrap().with_substeps(Substeps::new(53, 10_000));
+    let record = harness::run(&sleigh(0.5), &method, &request(&start, (1e12, 1)), &mut ());
+    let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
+    assert_eq!((why.tried, record.steps, failure.source), (10_000, 0, why.source));
     assert!(matches!(why.source, StepError::Closed(_)), "{why}");
     assert!(why.part < 10.0 && why.time > 1e3 && why.time < 1e6, "{why}");
     assert!(why.to_string().contains("10000 parts of the step were tried"), "{why}");

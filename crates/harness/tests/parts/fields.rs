@@ -1,8 +1,6 @@
 //! The sleigh under drag, in a bowl and over hills, in steps that are far too long for them.
 
-use crate::parts::{BAR, by_each, made, sleigh};
-use crate::support::ByHand;
-use dla::{Dla, Gauss};
+use crate::parts::{BAR, by, by_each, sleigh};
 use lagrangian::With;
 use sleigh::SleighState;
 use sleigh::effects::{Bowl, Drag, Hill, Hills};
@@ -25,7 +23,7 @@ fn dragged(cases: &[(f64, u64)], of_a_million: u64) {
     let step = 0.05;
     for &(part, steps) in cases {
         let along = part / step;
-        let system = ByHand::from(With { body: sleigh(0.5), effects: Drag::new(along, 0.0).unwrap() });
+        let system = With { body: sleigh(0.5), effects: Drag::new(along, 0.0).unwrap() };
         for (name, run) in by_each(&system, &start, (step, steps)) {
             let (end, left) = (run.end(), (-along * step * steps as f64).exp());
             assert!((end.x * along - (1.0 - left)).abs() <= BAR, "{name}, c h/m = {part}: x = {}", end.x);
@@ -35,14 +33,14 @@ fn dragged(cases: &[(f64, u64)], of_a_million: u64) {
             // Dead, to the rounding of the speed that there was.
             let speeds = run.seen(|state| state.speed);
             assert!(speeds.iter().all(|speed| *speed > -1e-14), "{name}, c h/m = {part}: {speeds:?}");
-            assert!(part < 100.0 || run.divided > 0, "{name} {part}");
+            assert!(part < 100.0 || run.substeps.divided > 0, "{name} {part}");
         }
     }
     // A million time constants a step; the other methods do it too, in as many parts as there are time constants.
-    let system = ByHand::from(With { body: sleigh(0.5), effects: Drag::new(1e6 / step, 0.0).unwrap() });
-    let run = made(&system, Dla::midpoint(), &start, (step, of_a_million));
+    let system = With { body: sleigh(0.5), effects: Drag::new(1e6 / step, 0.0).unwrap() };
+    let run = by("dla", &system, &start, (step, of_a_million));
     assert!((run.end().x * 1e6 / step - 1.0).abs() <= BAR && run.end().speed.abs() < 1e-14);
-    assert!(run.divided > 0 && run.parts < 10_000, "{}", run.parts);
+    assert!(run.substeps.divided > 0 && run.substeps.parts < 10_000, "{}", run.substeps.parts);
 }
 
 #[test]
@@ -63,17 +61,17 @@ fn swings(cases: &[(f64, u64)]) {
     let step = 0.05;
     for &(part, steps) in cases {
         let rate: f64 = part / step;
-        let system = ByHand::from(With { body: sleigh(0.0), effects: Bowl::new([rate * rate; 2], [0.0; 2]).unwrap() });
+        let system = With { body: sleigh(0.0), effects: Bowl::new([rate * rate; 2], [0.0; 2]).unwrap() };
         for (name, run) in by_each(&system, &start, (step, steps)) {
             let all = 0.5 * rate * rate;
             let phase = rate * step * steps as f64;
-            let bar = 1e-4 * (1.0 + phase.max(run.parts as f64));
+            let bar = 1e-4 * (1.0 + phase.max(run.substeps.parts as f64));
             for node in &run.nodes {
                 assert!((node.q[0] - (rate * node.t).cos()).abs() <= bar, "{name} {part}: t = {}, {bar}", node.t);
                 assert!((node.energy - all).abs() <= 1e-8 * all, "{name} {part}: {:e}", node.energy);
             }
             // Even the order eight does not go through five swings at once.
-            assert_eq!(run.divided > 0, part > 5.0 || part > 0.5 && name != "gauss8", "{name} {part}");
+            assert_eq!(run.substeps.divided > 0, part > 5.0 || part > 0.5 && name != "gauss8", "{name} {part}");
         }
     }
 }
@@ -95,10 +93,10 @@ fn steep_hill_in_full() {
 fn over_hills(cases: &[(f64, f64)], steps: u64, finer: u32) {
     for &(y, height) in cases {
         let hills = [0.3, 0.82, 1.01].map(|x| Hill { height, x, y, width: 0.01 });
-        let system = ByHand::from(With { body: sleigh(0.5), effects: Hills::new(hills.to_vec()).unwrap() });
+        let system = With { body: sleigh(0.5), effects: Hills::new(hills.to_vec()).unwrap() };
         let start = SleighState { x: -0.5, speed: 1.0, turn_rate: 0.2, ..SleighState::default() };
-        let right = made(&system, Gauss::new::<6>(), &start, (0.05 / f64::from(finer), steps * u64::from(finer)));
-        let (right, divided) = (right.end(), right.divided);
+        let right = by("gauss12", &system, &start, (0.05 / f64::from(finer), steps * u64::from(finer)));
+        let (right, divided) = (right.end(), right.substeps.divided);
         assert_eq!(divided, 0);
         for (name, run) in by_each(&system, &start, (0.05, steps)) {
             let end = run.end();
@@ -111,7 +109,7 @@ fn over_hills(cases: &[(f64, f64)], steps: u64, finer: u32) {
             {
                 assert!((found - right).abs() <= 0.5 * BAR, "{name} {height}: {found} {right}");
             }
-            assert!(height < 1.0 || run.divided > 0, "{name} {height}");
+            assert!(height < 1.0 || run.substeps.divided > 0, "{name} {height}");
         }
     }
 }

@@ -1,0 +1,65 @@
+//! What comes of steps that are far too long and are made in parts.
+
+mod fields;
+mod free;
+
+use dla::{Node, Schedule, Substeps};
+use harness::{Method, Request, SubstepSummary, run_watched};
+use lagrangian::{Piecewise, System};
+use sleigh::{Sleigh, SleighState};
+
+/// The halves of every part agree to this part of the velocity. Ten parts of a turn that are wrong by that, all in the same sense,
+/// lead astray by ten times as much.
+const BAR: f64 = 1e-3;
+
+/// A run with steps that may be divided.
+struct Run {
+    nodes: Vec<Node<3, 1>>,
+    substeps: SubstepSummary,
+}
+
+impl Run {
+    fn end(&self) -> SleighState {
+        self.nodes.last().map(|node| SleighState::from_coordinates(&node.q, &node.v)).unwrap()
+    }
+
+    /// The speed or the spin at every node.
+    fn seen(&self, of: fn(&SleighState) -> f64) -> Vec<f64> {
+        self.nodes.iter().map(|node| of(&SleighState::from_coordinates(&node.q, &node.v))).collect()
+    }
+}
+
+fn request(start: &SleighState, (step, steps): (f64, u64)) -> Request<3> {
+    let (q, v) = start.to_coordinates();
+    Request { schedule: Schedule { t0: 0.0, step, steps }, q, v, samples: 2 }
+}
+
+/// The run by the method of that name.
+fn by<Sys: System<3, 1> + Piecewise>(name: &str, system: &Sys, start: &SleighState, steps: (f64, u64)) -> Run {
+    let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
+    let made = run_watched::<3, 1>(system, &method, &request(start, steps), (&[], 1), Some(1), &mut ());
+    assert!(made.record.failure.is_none(), "{name}: {:?}", made.record.failure);
+    let nodes = made.trajectory.unwrap().nodes().to_vec();
+    // The blade does not slip at any node, by more than rounding of the velocities there.
+    for node in &nodes {
+        let size = node.v.iter().fold(0.0, |sum, v| sum + v.abs());
+        assert!(node.constraint <= 16.0 * f64::EPSILON * size, "t = {}: {:e}", node.t, node.constraint);
+    }
+    Run { nodes, substeps: made.record.substeps.unwrap() }
+}
+
+/// A method of each family.
+const EACH: &[&str] = &["dla", "dla4", "gauss8", "energy4"];
+
+/// The runs by a method of each family.
+fn by_each<Sys: System<3, 1> + Piecewise>(
+    system: &Sys,
+    start: &SleighState,
+    steps: (f64, u64),
+) -> impl Iterator<Item = (&'static str, Run)> {
+    EACH.iter().map(move |name| (*name, by(name, system, start, steps)))
+}
+
+fn sleigh(offset: f64) -> Sleigh {
+    Sleigh::new(1.0, 1.0, offset).unwrap()
+}

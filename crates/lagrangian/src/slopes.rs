@@ -1,0 +1,100 @@
+use crate::gradient::by_places;
+use crate::second::{AT_ONCE, BLOCK};
+use crate::system::with_nonlinear;
+use crate::{Dual, Gradient, Scalar, System, from_fn};
+
+/// The residual of each constraint with its derivatives along `(dq, dv) = (part, 1) e_j`.
+#[must_use]
+#[inline(always)]
+pub fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    part: f64,
+) -> [Dual<f64, N>; M] {
+    let affine = match const { N <= AT_ONCE } {
+        true => by_places!(affine_along::<Sys, N, M>(system, t, q, v, part)),
+        false => affine_by_blocks(system, t, q, v, part),
+    };
+    let in_q = from_fn(|i| Dual { re: q[i], eps: from_fn(|j| if i == j { part } else { 0.0 }) });
+    with_nonlinear(system, Dual::fixed(t), &in_q, &Dual::variables(v), affine)
+}
+
+/// The same of affine constraints, `d(A v + b) = (A + part d(A v + b)/dq) dv`, by derivatives in `W` places.
+#[inline(always)]
+fn affine_along<Sys: System<N, M>, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    part: f64,
+) -> [Dual<f64, N>; M] {
+    let (a, b) = system.constraint(Gradient::<f64, W>::fixed(t), &Gradient::variables(q));
+    from_fn(|k| {
+        let mut along = b[k];
+        for i in 0..N {
+            along += a[k][i] * v[i];
+        }
+        let in_q: [f64; N] = along.gradient();
+        Dual { re: along.re, eps: from_fn(|j| a[k][j].re + part * in_q[j]) }
+    })
+}
+
+/// The same of many coordinates, some of them at a time.
+#[inline(never)]
+fn affine_by_blocks<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    part: f64,
+) -> [Dual<f64, N>; M] {
+    let mut rows = [Dual::fixed(0.0); M];
+    for from in (0..N).step_by(BLOCK) {
+        let (a, b) = system.constraint(Gradient::<f64, BLOCK>::fixed(t), &Gradient::some_variables(q, from));
+        for k in 0..M {
+            let along = (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]);
+            rows[k].re = along.re;
+            let in_q: [f64; BLOCK] = along.gradient();
+            for (j, x) in (from..N).zip(in_q) {
+                rows[k].eps[j] = a[k][j].re + part * x;
+            }
+        }
+    }
+    rows
+}
+
+/// `L_q` and `L_v`.
+#[must_use]
+#[inline(always)]
+pub fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [[S; N]; 2] {
+    by_places!(gradients_by::<Sys, S, N, M>(system, t, q, v))
+}
+
+/// The same by derivatives in `W` places.
+#[inline(always)]
+fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [[S; N]; 2] {
+    let t = Gradient::<S, W>::fixed(t);
+    let l_v = system.lagrangian(t, &Gradient::all_fixed(q), &Gradient::variables(v));
+    let l_q = system.lagrangian(t, &Gradient::variables(q), &Gradient::all_fixed(v));
+    [l_q.gradient(), l_v.gradient()]
+}
+
+/// Time and configuration at the fraction `alpha` of a step.
+#[must_use]
+#[inline(always)]
+pub fn on_line<S: Scalar, const N: usize>(alpha: f64, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> (S, [S; N]) {
+    let part = h * alpha;
+    (t0 + part, from_fn(|i| q0[i] + part * v[i]))
+}
