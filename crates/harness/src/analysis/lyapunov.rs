@@ -6,7 +6,7 @@ use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
 use crate::{Method, Progress};
-use dla::{FullMechanics, Observer, OwnMethods, RunError, Schedule, SeededMechanics, SensitivityError, State, Subject};
+use dla::{FullMechanics, OwnMethods, Schedule, SensitivityError, State, Subject};
 use thiserror::Error;
 
 /// What exponents are asked for.
@@ -116,38 +116,8 @@ pub fn lyapunov_within<const N: usize, const M: usize>(
     if let Some(time) = system.jump_times(first, last).into_iter().min_by(f64::total_cmp) {
         return Err(LyapunovError::Jump { time });
     }
-    lyapunov_of(system, its, method, request, |schedule, state, observer| {
-        integrate_pieces(Subject { system, own }, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
-    })
-}
-
-/// The same of a run that `drive` makes, by the steps of that method: for a caller who has the method's type, and need not
-/// compile all others.
-///
-/// # Errors
-/// As [`lyapunov`]; jumps are not looked for.
-pub fn lyapunov_by<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
-    method: &Method,
-    request: &LyapunovRequest<N>,
-    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
-) -> Result<Lyapunov, LyapunovError> {
-    lyapunov_of(system, (N, M), method, request, drive)
-}
-
-/// The same of a system of which so many coordinates and constraints, the first, are its own: the others fill up the shape.
-///
-/// # Errors
-/// As [`lyapunov_by`].
-fn lyapunov_of<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
-    own: (usize, usize),
-    method: &Method,
-    request: &LyapunovRequest<N>,
-    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
-) -> Result<Lyapunov, LyapunovError> {
     let LyapunovRequest { schedule, settle, q, v, .. } = *request;
-    let tangent = Steps::of(system, own, method, (schedule.t0, &q))?;
+    let tangent = Steps::of(system, its, method, (schedule.t0, &q))?;
     let most = tangent.count();
     let count = request.exponents.unwrap_or(most);
     if count == 0 || count > most {
@@ -155,7 +125,9 @@ fn lyapunov_of<const N: usize, const M: usize>(
     }
     let mut stretch = Stretch::new(&tangent, method.info().order, count, (settle, schedule.steps));
     let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
-    let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);
+    let mut state = State::new(q, v, system.angles());
+    let mut observer = (&mut stretch, Ticker::new(progress, 0));
+    let outcome = integrate_pieces(Subject { system, own }, method, &all, &mut state, &mut observer);
     let failure = stretch.failure.or(outcome.err().map(Into::into));
     // Also where all steps are counted, the tangent vectors have had one step to align.
     let before = settle.max(1) as f64 * schedule.step.abs();

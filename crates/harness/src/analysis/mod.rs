@@ -35,7 +35,7 @@ pub use equilibria::{
     Equilibrium, EquilibriumError, RelativeEquilibria, relative_equilibria, relative_equilibria_within,
 };
 pub use linearised::{ReducedField, reduced_field};
-pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov, lyapunov_by, lyapunov_within};
+pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov, lyapunov_within};
 pub use measure::{enclosed_area, measure_defect};
 pub use momentum_meter::MomentumMeter;
 pub(crate) use parallel::STACK;
