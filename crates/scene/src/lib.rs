@@ -56,9 +56,9 @@ pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
 pub use settings::{Setting, with_settings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
-pub use system::{Visitor, in_lanes};
+pub use system::Visitor;
 pub use systems::{
-    AnyEffect, AnySystem, Column, EffectList, EffectPower, LANES, LaneMethod, PARAMETERS, SceneBody, SceneEffects,
-    SceneSystem, SleighFamily, Started,
+    AnyEffect, AnySystem, Column, EffectList, EffectPower, PARAMETERS, SceneBody, SceneEffects, SceneSystem,
+    SleighFamily, Started,
 };
 pub use train::TrainError;

@@ -2,7 +2,7 @@ use crate::{Built, Scene, SceneEffect};
 use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
-use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SleighFamily, Started};
+use systems::{AnyEffect, AnySystem, Guiding, Rotor, SleighFamily, Started};
 
 /// What is to be done with the system of a scene, whatever its shape.
 pub trait Visitor {
@@ -237,15 +237,4 @@ impl SceneEffect {
             | SceneEffect::Turntable { .. } => return Ok(None),
         }))
     }
-}
-
-/// Hands the members of a sweep over in the lanes of vector registers, as [`systems::in_lanes`], where there is such an ensemble of
-/// what acts in them.
-pub fn in_lanes(scenes: &[&Scene], method: LaneMethod, time: (f64, f64), run: &mut LaneRun<'_>) -> bool {
-    if !scenes.iter().all(|scene| matches!(scene.effects[..], [] | [SceneEffect::Bowl { .. }])) {
-        return false;
-    }
-    let lane = |scene: &&Scene| Some(Lane { sleigh: scene.sleigh, start: scene.start, effects: scene.acting().ok()? });
-    let lanes: Option<Vec<Lane>> = scenes.iter().map(lane).collect();
-    lanes.is_some_and(|lanes| systems::in_lanes(&lanes, method, time, run))
 }

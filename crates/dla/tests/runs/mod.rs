@@ -6,7 +6,6 @@ mod dense;
 pub(crate) mod events;
 pub(crate) mod failures;
 mod hints;
-mod lanes;
 pub(crate) mod observers;
 mod own_steps;
 mod recommend;

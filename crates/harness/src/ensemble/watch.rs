@@ -2,7 +2,7 @@ use super::summary::Of;
 use super::{Quantities, Summary};
 use crate::Method;
 use crate::run::integrate_pieces;
-use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View, stops};
+use dla::{Observer, RunError, Schedule, State, StepReport, Subject, View};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
@@ -21,36 +21,6 @@ impl<Q, const N: usize> Debug for Watching<'_, Q, N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { schedule, every, .. } = self;
         f.debug_struct("Watching").field("schedule", schedule).field("every", every).finish_non_exhaustive()
-    }
-}
-
-/// The summaries of trajectories in lanes; none of one that was lost, which [`summarise`] tells more about.
-pub fn watch<Q: Quantities, const N: usize, const M: usize, const W: usize>(
-    ensemble: &mut dyn Ensemble<N, W>,
-    systems: &[&dyn Mechanics<N, M>; W],
-    watching: &Watching<'_, Q, N>,
-) -> Vec<Option<Summary<Q>>> {
-    let Watching { schedule, every, of } = watching;
-    let mut summaries: Vec<Option<Summary<Q>>> = vec![None; W];
-    let mut made = 0;
-    loop {
-        let (state, t) = (ensemble.state(), schedule.time(made));
-        for (lane, place) in summaries.iter_mut().enumerate() {
-            let system = systems[lane];
-            let there = state.is_finite(lane) && (made == 0 || place.is_some());
-            let seen = there.then(|| system.velocity_of(t, &state.q(lane), &state.xi(lane)).ok()).flatten();
-            match (seen, place.as_mut()) {
-                (Some(v), Some(summary)) => summary.see(system, t, &state.lane(lane, v), of),
-                (Some(v), None) => *place = Some(Summary::first(system, t, &state.lane(lane, v), of)),
-                (None, _) => *place = None,
-            }
-        }
-        if made >= schedule.steps || stops() {
-            return summaries;
-        }
-        let steps = (*every).max(1).min(schedule.steps - made);
-        ensemble.advance(steps);
-        made += steps;
     }
 }
 

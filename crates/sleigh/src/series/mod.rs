@@ -2,13 +2,10 @@
 
 mod coefficients;
 mod crossing;
-mod eight;
-mod ensemble;
 mod own_axes;
 mod pace;
 mod place;
 
-pub use ensemble::TaylorEnsemble;
 pub use own_axes::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
 
 use crossing::{MAX_STEPS, SeriesCrossing, SeriesEnd};
