@@ -9,7 +9,6 @@ mod hints;
 pub(crate) mod observers;
 mod own_steps;
 mod recommend;
-mod round_well;
 pub(crate) mod scripted;
 pub(crate) mod substeps;
 mod trials;
