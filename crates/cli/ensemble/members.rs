@@ -3,7 +3,7 @@ use dla::Schedule;
 use harness::Method;
 use harness::analysis::has_tangents;
 use harness::analysis::{LyapunovRequest, lyapunov_within};
-use harness::ensemble::{Summary, Watching, summarise};
+use harness::ensemble::{Summary, summarise};
 use scene::{AnyScene, Built, Column, Quantity, RunSettings, Sweep, Visitor};
 
 use crate::error::CliError;
@@ -54,7 +54,7 @@ impl Summed {
     }
 
     /// The numbers of these columns; NaN where there is no summary.
-    fn numbers(&self, summary: Option<&Summary<Vec<f64>>>) -> Vec<f64> {
+    fn numbers(&self, summary: Option<&Summary>) -> Vec<f64> {
         let Some(Summary { t, end, low, high, energy, energy_deviation, constraint }) = summary else {
             return vec![f64::NAN; 4 + self.state.len() + 2 * self.extremes.len()];
         };
@@ -94,17 +94,15 @@ impl Members<'_> {
     }
 
     /// Its numbers, as far as it comes.
-    fn compute(&self, member: u64, summary: &mut Option<Summary<Vec<f64>>>, exponent: &mut f64) -> Result<(), String> {
+    fn compute(&self, member: u64, summary: &mut Option<Summary>, exponent: &mut f64) -> Result<(), String> {
         let scene = self.sweep.member(member, self.names).map_err(|error| error.to_string())?;
         let (method, schedule) = &self.run_of(&scene)?;
         let failure;
-        (*summary, failure) = scene
-            .visit(MemberRun { method, schedule: *schedule, every: self.sweep.every })
-            .map_err(|error| error.to_string())?;
+        (*summary, failure) =
+            scene.visit(MemberRun { method, schedule, every: self.sweep.every }).map_err(|error| error.to_string())?;
         failure.map_or(Ok(()), Err)?;
         if self.sweep.exponent {
-            let found =
-                scene.visit_free(Exponent { method, schedule: *schedule }).map_err(|error| error.to_string())?;
+            let found = scene.visit_free(Exponent { method, schedule }).map_err(|error| error.to_string())?;
             *exponent = found.ok_or("the scene imposes velocities, and has no exponents")??;
         }
         Ok(())
@@ -121,19 +119,18 @@ impl Members<'_> {
 
 struct MemberRun<'a> {
     method: &'a Method,
-    schedule: Schedule,
+    schedule: &'a Schedule,
     every: u64,
 }
 
 impl Visitor for MemberRun<'_> {
-    type Output = (Option<Summary<Vec<f64>>>, Option<String>);
+    type Output = (Option<Summary>, Option<String>);
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let count = system.in_state();
         let of =
             |t: f64, q: &[f64; N], v: &[f64; N]| (0..count).map(|k| system.value(k, t, q, v)).collect::<Vec<f64>>();
-        let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
-        let (summary, failure) = summarise(&system, self.method, (q, v), &watching);
+        let (summary, failure) = summarise(&system, self.method, (q, v), (self.schedule, self.every), &of);
         (summary, failure.map(|failure| failure.to_string()))
     }
 }
@@ -141,7 +138,7 @@ impl Visitor for MemberRun<'_> {
 /// The largest Lyapunov exponent (1/s), after a tenth of the run.
 struct Exponent<'a> {
     method: &'a Method,
-    schedule: Schedule,
+    schedule: &'a Schedule,
 }
 
 impl Visitor for Exponent<'_> {
@@ -149,7 +146,7 @@ impl Visitor for Exponent<'_> {
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let settle = self.schedule.steps / 10;
-        let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
+        let schedule = Schedule { steps: self.schedule.steps - settle, ..*self.schedule };
         let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
         let found = lyapunov_within((&*system, &system), system.own(), self.method, &request, &mut ());
         let found = found.map_err(|error| error.to_string())?;

@@ -2,8 +2,6 @@
 
 mod stream;
 mod summary;
-mod watch;
 
 pub use stream::in_order;
-pub use summary::{Quantities, Summary};
-pub use watch::{Watching, summarise};
+pub use summary::{Summary, summarise};

@@ -1,24 +1,20 @@
-use dla::{Mechanics, State};
+use crate::Method;
+use crate::run::integrate_pieces;
+use dla::{Observer, RunError, Schedule, State, StepReport, Subject, View};
 use lagrangian::linear::larger;
-
-/// A list of numbers: an array, or a vector where their number is not known before.
-pub trait Quantities: AsRef<[f64]> + AsMut<[f64]> + Clone {}
-
-impl<T: AsRef<[f64]> + AsMut<[f64]> + Clone> Quantities for T {}
+use std::ops::ControlFlow;
 
 /// A trajectory in a few numbers: its end, and extremes over the observed nodes.
-///
-/// `Q` is the list of the quantities, an array or a vector.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summary<Q> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
     /// Time of the end (s).
     pub t: f64,
     /// The quantities at the end.
-    pub end: Q,
+    pub end: Vec<f64>,
     /// The least of each.
-    pub low: Q,
+    pub low: Vec<f64>,
     /// The largest of each.
-    pub high: Q,
+    pub high: Vec<f64>,
     /// Energy at the start and at the end (J).
     pub energy: [f64; 2],
     /// `max |E - E0|` (J): an error, where nothing does work.
@@ -28,44 +24,70 @@ pub struct Summary<Q> {
 }
 
 /// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
-pub(super) type Of<'a, Q, const N: usize> = &'a dyn Fn(f64, &[f64; N], &[f64; N]) -> Q;
+type Of<'a, const N: usize> = &'a dyn Fn(f64, &[f64; N], &[f64; N]) -> Vec<f64>;
 
-impl<Q: Quantities> Summary<Q> {
-    /// The summary of the first node alone.
-    pub(super) fn first<const N: usize, const M: usize>(
-        system: &dyn Mechanics<N, M>,
-        t: f64,
-        state: &State<N>,
-        of: Of<'_, Q, N>,
-    ) -> Self {
-        let end = of(t, &state.unwrapped(), state.v());
-        let energy = system.energy(t, state.q(), state.v());
-        let (low, high) = (end.clone(), end.clone());
-        let mut first = Self { t, end, low, high, energy: [energy; 2], energy_deviation: 0.0, constraint: 0.0 };
-        first.look(system, t, state);
-        first
-    }
+/// The summary of one trajectory by any method, over every so many of its nodes and the last; of one that fails that of its valid part,
+/// with the failure.
+pub fn summarise<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
+    method: &Method,
+    (q, v): ([f64; N], [f64; N]),
+    (schedule, every): (&Schedule, u64),
+    of: Of<'_, N>,
+) -> (Option<Summary>, Option<RunError>) {
+    let mut looking = Looking { every: every.max(1), of, seen: None, last: None };
+    let subject = subject.into();
+    let mut state = State::new(q, v, subject.system.angles());
+    let outcome = integrate_pieces(subject, method, schedule, &mut state, &mut looking);
+    (looking.seen, outcome.err())
+}
 
-    /// Takes in one more node.
-    pub(super) fn see<const N: usize, const M: usize>(
-        &mut self,
-        system: &dyn Mechanics<N, M>,
-        t: f64,
-        state: &State<N>,
-        of: Of<'_, Q, N>,
-    ) {
-        (self.t, self.end) = (t, of(t, &state.unwrapped(), state.v()));
-        for (k, value) in self.end.as_ref().iter().enumerate() {
-            let (low, high) = (&mut self.low.as_mut()[k], &mut self.high.as_mut()[k]);
-            (*low, *high) = (low.min(*value), high.max(*value));
+/// The observer of one trajectory.
+struct Looking<'a, const N: usize> {
+    every: u64,
+    of: Of<'a, N>,
+    seen: Option<Summary>,
+    last: Option<u64>,
+}
+
+impl<const N: usize> Looking<'_, N> {
+    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
+        if self.last.replace(node.k) == Some(node.k) {
+            return;
         }
-        self.energy[1] = system.energy(t, state.q(), state.v());
-        self.look(system, t, state);
+        let (t, energy) = (node.t, node.energy());
+        let end = (self.of)(t, &node.state.unwrapped(), node.state.v());
+        let seen = self.seen.get_or_insert_with(|| Summary {
+            t,
+            end: Vec::new(),
+            low: end.clone(),
+            high: end.clone(),
+            energy: [energy; 2],
+            energy_deviation: 0.0,
+            constraint: 0.0,
+        });
+        for (k, value) in end.iter().enumerate() {
+            (seen.low[k], seen.high[k]) = (seen.low[k].min(*value), seen.high[k].max(*value));
+        }
+        (seen.t, seen.end, seen.energy[1]) = (t, end, energy);
+        seen.energy_deviation = larger(seen.energy_deviation, (energy - seen.energy[0]).abs());
+        seen.constraint = larger(seen.constraint, node.constraint());
+    }
+}
+
+impl<const N: usize, const M: usize> Observer<N, M> for Looking<'_, N> {
+    fn start(&mut self, node: &View<'_, N, M>) {
+        self.see(node);
     }
 
-    fn look<const N: usize, const M: usize>(&mut self, system: &dyn Mechanics<N, M>, t: f64, state: &State<N>) {
-        self.energy_deviation = larger(self.energy_deviation, (self.energy[1] - self.energy[0]).abs());
-        let residual = system.residual(t, state.q(), state.v());
-        self.constraint = residual.iter().fold(self.constraint, |most, residual| larger(most, residual.abs()));
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+        if node.k.is_multiple_of(self.every) {
+            self.see(node);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn end(&mut self, node: &View<'_, N, M>) {
+        self.see(node);
     }
 }

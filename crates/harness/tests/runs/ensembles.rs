@@ -3,30 +3,30 @@
 use approx::assert_abs_diff_eq;
 use dla::Schedule;
 use harness::Method;
-use harness::ensemble::{Summary, Watching, in_order, summarise};
+use harness::ensemble::{Summary, in_order, summarise};
 use lagrangian::{With, velocity_of};
 use sleigh::{Sleigh, SleighState};
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-fn words(state: &SleighState) -> [f64; 3] {
-    [state.x, state.speed, state.turn_rate]
+fn words(_t: f64, q: &[f64; 3], v: &[f64; 3]) -> Vec<f64> {
+    let state = SleighState::from_coordinates(q, v);
+    vec![state.x, state.speed, state.turn_rate]
 }
 
 /// The summary of a member by the closed map.
-fn member(k: u64) -> Summary<[f64; 3]> {
+fn member(k: u64) -> Summary {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
     let (q, xi) = ([0.1, 0.2, 0.3], [-1.0, 0.1 + 0.01 * k as f64, 0.0]);
     let v = velocity_of(&system, 0.0, &q, &xi).unwrap();
-    let of = |_: f64, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
     let method = Method::named("dla", None).unwrap();
-    let (summary, failure) = summarise(&system, &method, (q, v), &Watching { schedule, every: 10, of: &of });
+    let (summary, failure) = summarise(&system, &method, (q, v), (&schedule, 10), &words);
     assert!(failure.is_none());
     summary.unwrap()
 }
 
-fn all(members: Range<u64>, threads: usize) -> Vec<Summary<[f64; 3]>> {
+fn all(members: Range<u64>, threads: usize) -> Vec<Summary> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let mut rows = Vec::new();
     let outcome: ControlFlow<()> = pool.install(|| {
@@ -135,11 +135,10 @@ fn a_run_is_summed_up() {
 #[test]
 fn a_run_that_fails_is_summed_up_as_far_as_it_goes() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
-    let of = |_: f64, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 2.9, steps: 10 };
     let method = Method::named("dla", None).unwrap();
     let start = ([0.0; 3], [-1.5, 0.0, 1e-3]);
-    let (summary, failure) = summarise(&system, &method, start, &Watching { schedule, every: 1, of: &of });
+    let (summary, failure) = summarise(&system, &method, start, (&schedule, 1), &words);
     let (summary, failure) = (summary.unwrap(), failure.unwrap());
     assert_abs_diff_eq!(summary.t, failure.time, epsilon = 0.0);
     assert!(summary.end.iter().all(|x| x.is_finite()));
