@@ -1,6 +1,5 @@
 //! What an error at the end costs on the cases of `benches/peers`: Gauss collocation of 16th order by equal steps and by steps
-//! of its own, on the plane and, in a round well, in the axes of the sleigh, and Taylor series. Microseconds, the least of rounds on
-//! one core.
+//! of its own, and Taylor series. Microseconds, the least of rounds on one core.
 //!
 //! With `--all` every run is shown, not only the quickest to an error.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
@@ -9,7 +8,7 @@ use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, drive};
 use lagrangian::{Effect, EffectSlope, Scalar, System, With};
 use sleigh::effects::Bowl;
 use sleigh::series::{InOwnAxes, OwnPush, PushInOwnAxes};
-use sleigh::{RoundWell, Sleigh, SleighBody, SleighState, Taylor};
+use sleigh::{Sleigh, SleighBody, SleighState, Taylor};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -115,9 +114,5 @@ fn main() {
     case("S1", &body, start);
     case("S2", &sleigh(0.1), start);
     case("L", &With { body, effects: AtBlade(0.05) }, start);
-    let well = RoundWell::drawing(body, 0.05, [0.0; 2], 0.0).unwrap();
-    case("L, own axes", &well, well.coordinates(&START));
     case("bowl", &With { body, effects: Bowl::new([0.1, 0.1], [0.0; 2]).unwrap() }, start);
-    let well = RoundWell::new(body, 0.1, [0.0; 2]).unwrap();
-    case("bowl, own axes", &well, well.coordinates(&START));
 }

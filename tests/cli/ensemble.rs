@@ -9,7 +9,6 @@ use crate::program::Folder;
 use std::fs;
 use std::time::{Duration, Instant};
 
-/// Lanes of the closed map: groups of sixteen.
 const SWEEP: &str = "\
 scene = \"turnaround\"
 duration = 5.0
@@ -50,7 +49,6 @@ fn spool(folder: &Folder, sweep: &str, out: &str) -> Vec<u8> {
 #[test]
 fn rows_are_in_the_spool_as_soon_as_they_are_done() {
     let folder = Folder::new();
-    // Sixteen members of the first kind are a group, of the second one is.
     for method in ["dla", "rk4"] {
         folder
             .write("slow.toml", SWEEP.replace("duration = 5.0", &format!("duration = 1000.0\nmethod = \"{method}\"")));

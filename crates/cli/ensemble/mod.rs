@@ -32,7 +32,7 @@ use members::{MemberRow, Members, Summed, method_of};
 use result::Shape;
 use scene::Sweep;
 use spool::{Spool, SpoolRequest};
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::time::Instant;
 use totals::EnsembleTotals;
 
@@ -101,7 +101,7 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     compare::unless_interrupted(made, None, failed)
 }
 
-/// Computes the members up to `end` that are not there yet, as far as a signal lets it come; each group is in the spool, and in the totals, as soon
+/// Computes the members up to `end` that are not there yet, as far as a signal lets it come; each row is in the spool, and in the totals, as soon
 /// as it and those before it are done.
 fn compute(
     members: &Members<'_>,
@@ -111,32 +111,23 @@ fn compute(
     interrupt: &Interrupt,
     bar: &ProgressBar,
 ) -> Result<(), CliError> {
-    let size = members.group();
     let lines = spool.as_ref().map(Spool::lines).cloned();
-    let mut done = spool.as_ref().map_or(0, Spool::next);
-    let todo = done - done % size..end;
-    let each = |range: Range<u64>| {
-        let rows = members.rows(range);
-        let texts: Vec<String> = lines.iter().flat_map(|lines| rows.iter().map(|row| lines.line(row))).collect();
-        (rows, texts)
+    let todo = spool.as_ref().map_or(0, Spool::next)..end;
+    let each = |member| {
+        let row = members.row(member);
+        let text = lines.as_ref().map(|lines| lines.line(&row)).unwrap_or_default();
+        (row, text)
     };
-    let sink = |groups: Vec<(Vec<MemberRow>, Vec<String>)>| {
-        let mut text = String::new();
-        let before = done;
-        for (rows, texts) in &groups {
-            // A group that had begun is made again, without the rows that are there of it.
-            let fresh = rows.iter().take_while(|row| row.member < before).count();
-            rows[fresh..].iter().for_each(|row| totals.add(&row.values, row.error.as_deref()));
-            text.extend(texts.iter().skip(fresh).map(String::as_str));
-            done += (rows.len() - fresh) as u64;
-        }
-        bar.inc(done - before);
-        match spool.as_mut().map_or(Ok(()), |spool| spool.add(&text, done - before)) {
+    let sink = |rows: Vec<(MemberRow, String)>| {
+        rows.iter().for_each(|(row, _)| totals.add(&row.values, row.error.as_deref()));
+        let text: String = rows.iter().map(|(_, text)| text.as_str()).collect();
+        bar.inc(rows.len() as u64);
+        match spool.as_mut().map_or(Ok(()), |spool| spool.add(&text, rows.len() as u64)) {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => ControlFlow::Break(error),
         }
     };
-    match in_order(todo, size, || interrupt.asked(), each, sink) {
+    match in_order(todo, || interrupt.asked(), each, sink) {
         ControlFlow::Break(error) => Err(error),
         ControlFlow::Continue(()) => Ok(()),
     }

@@ -63,7 +63,7 @@ pub(super) fn make(
     std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.to_owned(), source })?;
     let stem = stem(&about.identity);
     about.write(&folder.join(format!("{stem}.json")))?;
-    let range = share.members(about.members, members.group());
+    let range = share.members(about.members);
     let path = folder.join(name(&stem, &range));
     let (numbers, header) = (about.columns().len(), format!("{}\n", about.identity));
     let part = SweepPart { path: path.clone(), members: range.clone() };

@@ -1,5 +1,5 @@
 use super::identity;
-use super::members::{Members, Summed, method_of};
+use super::members::method_of;
 use super::parts::{name, stem};
 use super::share::Share;
 use crate::error::CliError;
@@ -18,7 +18,7 @@ pub struct SweepPlan {
     pub parts: Vec<String>,
 }
 
-/// The parts of the sweep in that file, `parts` of them; fewer where there are not so many groups of members that are computed together.
+/// The parts of the sweep in that file, `parts` of them; fewer where there are not so many members.
 ///
 /// # Errors
 /// [`Refusal`] with the first thing that is wrong with the sweep, or where no parts are asked for.
@@ -32,10 +32,9 @@ fn made(sweep: &str, parts: u64) -> Result<SweepPlan, CliError> {
     }
     let names = inspect::method_names();
     let sweep = Sweep::load(sweep, &names)?;
-    let method = method_of(&sweep, sweep.scene.run())?;
-    let (summed, stem, members) = (Summed::of(&sweep)?, stem(&identity(&sweep)), sweep.count());
-    let group = Members { sweep: &sweep, method, names: &names, summed: &summed }.group();
-    let of = parts.min(members.div_ceil(group));
-    let part = |number| name(&stem, &Share::new(number, of).members(members, group));
+    method_of(&sweep, sweep.scene.run())?;
+    let (stem, members) = (stem(&identity(&sweep)), sweep.count());
+    let of = parts.min(members);
+    let part = |number| name(&stem, &Share::new(number, of).members(members));
     Ok(SweepPlan { parts: (1..=of).map(part).collect(), stem, members })
 }

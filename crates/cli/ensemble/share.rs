@@ -14,12 +14,10 @@ impl Share {
         Self { number, of }
     }
 
-    /// Its members, of so many, in whole groups of `group`: members of a group are computed together.
-    pub(super) fn members(self, count: u64, group: u64) -> Range<u64> {
-        let groups = count.div_ceil(group);
-        let until = |part: u64| (u128::from(groups) * u128::from(part) / u128::from(self.of)) as u64;
-        let at = |part: u64| (until(part) * group).min(count);
-        at(self.number - 1)..at(self.number)
+    /// Its members, of so many.
+    pub(super) fn members(self, count: u64) -> Range<u64> {
+        let until = |part: u64| (u128::from(count) * u128::from(part) / u128::from(self.of)) as u64;
+        until(self.number - 1)..until(self.number)
     }
 }
 

@@ -267,12 +267,6 @@ impl<const N: usize> State<N> {
         })
     }
 
-    /// A state of its parts: configuration, rest and turns, all that a step leaves.
-    pub(crate) fn assembled([q, rest, turns]: [[f64; N]; 3], angles: [bool; N], v: [f64; N], xi: [f64; N]) -> Self {
-        let (left, past) = (Left::Velocities(xi), Past::new());
-        Self { q, rest, turns, bounds: bounds(angles), v, left, past }
-    }
-
     #[inline(always)]
     fn wrap(&mut self) {
         for i in 0..N {

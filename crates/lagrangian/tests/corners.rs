@@ -1,7 +1,7 @@
 //! Functions at and near their corners: values, derivatives as documented, and the same on every kind of number.
 
 use approx::assert_relative_eq;
-use lagrangian::simd::{Kernel, Pack, Simd, Wide, dispatch_widest};
+use lagrangian::simd::{Kernel, Pack, Simd, Wide, dispatch};
 use lagrangian::{Dual, Gradient, HyperDual, Lanes, Scalar};
 use num_dual::HyperDual64;
 use proptest::prelude::*;
@@ -204,8 +204,11 @@ proptest! {
     fn on_lanes_and_in_registers(
         x in proptest::array::uniform8(near_corners()), y in proptest::array::uniform8(near_corners()),
     ) {
-        let (lanes, registers) = (cornered(Lanes(x), Lanes(y)), dispatch_widest(InRegisters([&x, &y])));
-        let [one, two, three] = dispatch_widest(InCommon(&x, y[0]));
+        let lanes = cornered(Lanes(x), Lanes(y));
+        let (Some(registers), Some([one, two, three])) = (dispatch(InRegisters([&x, &y])), dispatch(InCommon(&x, y[0])))
+        else {
+            return Ok(());
+        };
         for l in 0..8 {
             let alone = cornered(x[l], y[l]);
             let common = [cornered(x[l], y[0]), cornered(y[0], 0.0), cornered(0.0, y[0])];

@@ -2,7 +2,7 @@ use crate::{BuiltScene, Scene, SceneEffect};
 use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
-use systems::{AnyEffect, Guiding, Lane, LaneMethod, LaneRun, Rotor, SleighFamily, Started};
+use systems::{AnyEffect, Guiding, Rotor, SleighFamily, Started};
 
 impl Scene {
     /// The system of the scene, with its start.
@@ -182,15 +182,4 @@ impl SceneEffect {
             | SceneEffect::Turntable { .. } => return Ok(None),
         }))
     }
-}
-
-/// Hands the members of a sweep over in the lanes of vector registers, as [`systems::in_lanes`], where there is such an ensemble of
-/// what acts in them.
-pub fn in_lanes(scenes: &[&Scene], method: LaneMethod, time: (f64, f64), run: &mut LaneRun<'_>) -> bool {
-    if !scenes.iter().all(|scene| matches!(scene.effects[..], [] | [SceneEffect::Bowl { .. }])) {
-        return false;
-    }
-    let lane = |scene: &&Scene| Some(Lane { sleigh: scene.sleigh, start: scene.start, effects: scene.acting().ok()? });
-    let lanes: Option<Vec<Lane>> = scenes.iter().map(lane).collect();
-    lanes.is_some_and(|lanes| systems::in_lanes(&lanes, method, time, run))
 }

@@ -2,13 +2,12 @@
 //!
 //! Coordinates, signs and acting points are those of [`Sleigh`]; the state that a person would write down is a
 //! [`SleighState`]; [`Exact`] is the motion of the free sleigh in closed form. What acts on it is in [`effects`]; what gives it
-//! other coordinates or another constraint is another body: [`Flywheel`], [`Guided`], [`RoundWell`]. Its own integrators are in
+//! other coordinates or another constraint is another body: [`Flywheel`], [`Guided`]. Its own integrators are in
 //! [`closed`] (the midpoint map in closed form) and [`series`] (Taylor series). Its geometry, without any forces, is in
 //! [`planimeter`] (what a led blade turns by) and [`parking`] (controls that reach a pose).
 
 mod bodies;
 mod body;
-mod canonical;
 mod centre_of_mass;
 mod checks;
 pub mod closed;
@@ -23,13 +22,13 @@ mod state;
 mod system;
 mod time_function;
 
-pub use bodies::{ClosedPath, Flywheel, Guide, Guided, RoundWell};
+pub use bodies::{ClosedPath, Flywheel, Guide, Guided};
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;
-pub use closed::{ClosedEnsemble, ClosedMap};
+pub use closed::ClosedMap;
 pub use error::SleighError;
 pub use exact::Exact;
-pub use series::{Taylor, TaylorEnsemble};
+pub use series::Taylor;
 pub use sleigh_body::SleighBody;
 pub use state::SleighState;
 pub use time_function::{Formula, Pulses, Ramp, Table, TimeFunction};

@@ -18,7 +18,7 @@
 //! | [`SHRINKING`] | `1/8` | a frozen Jacobian that does worse is renewed | chord method |
 //! | [`CONTRACTION`] | `1/4` | Newton and Kantorovich: `h0 = 2 theta <= 1/2` (Deuflhard 2004, sections 2.1 and 3.3) | continuation |
 //! | [`GONE`] | `eps^2` | an unknown that has lost all digits of its start twice is zero | simplified corrections |
-//! | [`LEFT`] | `eps/16` | as [`UNBIASED`], with the rate of contraction measured | eight stages or trajectories in registers |
+//! | [`LEFT`] | `eps/16` | as [`UNBIASED`], with the rate of contraction measured | eight stages in registers |
 //! | [`OF_ROW`], [`NOISE`] | `1e-12`, `1e-15` | of a number itself, where the terms are not known: what stalls above goes the slow way | registers |
 //! | [`SLOWEST`] | `1/20` | a search that begins near its end shrinks faster at first than it goes on | registers |
 //! | [`QUIET`], [`STALLS`] | `16`, `2` | what goes round among roundings is at its end | fixed points |

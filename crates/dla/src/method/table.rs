@@ -17,8 +17,6 @@ pub struct MethodInfo {
     pub reference: &'static str,
     /// Whether it makes steps of trains and other assemblies: [`assembly_method`](crate::assembly_method).
     pub assemblies: bool,
-    /// Whether ensembles of sleighs are computed in SIMD lanes by it.
-    pub lanes: bool,
     /// Whether its steps are differentiated for exponents ([`lyapunov`](fn@crate::analysis::lyapunov)), or why not.
     pub tangent: Result<(), &'static str>,
 }
@@ -30,16 +28,12 @@ const fn row(
     summary: &'static str,
     reference: &'static str,
 ) -> MethodInfo {
-    MethodInfo { kind, name, order, keeps, summary, reference, assemblies: false, lanes: false, tangent: Ok(()) }
+    MethodInfo { kind, name, order, keeps, summary, reference, assemblies: false, tangent: Ok(()) }
 }
 
 impl MethodInfo {
     const fn for_assemblies(self) -> Self {
         Self { assemblies: true, ..self }
-    }
-
-    const fn in_lanes(self) -> Self {
-        Self { lanes: true, ..self }
     }
 
     const fn without_tangent(self, reason: &'static str) -> Self {
@@ -127,8 +121,7 @@ pub const METHODS: &[MethodInfo] = &[
         "discrete Lagrange-d'Alembert, midpoint rule, self-adjoint (the default)",
         CORTES,
     )
-    .for_assemblies()
-    .in_lanes(),
+    .for_assemblies(),
     row(
         MethodKind::DlaTrapezoid,
         ("dla-trapezoid", 2),
@@ -172,11 +165,11 @@ pub const METHODS: &[MethodInfo] = &[
     lobatto!("lobatto5", 5, 8).without_tangent(NOT_HERE),
     gauss!("gauss4", 2, 4),
     gauss!("gauss6", 3, 6),
-    gauss!("gauss8", 4, 8).in_lanes(),
+    gauss!("gauss8", 4, 8),
     gauss!("gauss10", 5, 10),
     gauss!("gauss12", 6, 12),
     gauss!("gauss14", 7, 14),
-    gauss!("gauss16", 8, 16).in_lanes(),
+    gauss!("gauss16", 8, 16),
     row(
         MethodKind::GaussAdaptive,
         ("gauss-adaptive", 16),

@@ -5,14 +5,15 @@ use approx::assert_abs_diff_eq;
 use dla::{
     Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Watch, drive,
 };
-use lagrangian::{System, constraint_residual};
+use lagrangian::{System, With, constraint_residual};
 use proptest::prelude::*;
-use sleigh::{RoundWell, Sleigh, Taylor};
+use sleigh::effects::Bowl;
+use sleigh::{Sleigh, Taylor};
 use std::ops::ControlFlow;
 
 /// `x'' = -100 x` along a line: with `x = 0` and `x' = 1` it is `sin(10 t)/10`.
-fn well() -> RoundWell {
-    RoundWell::drawing(Sleigh::new(1.0, 1.0, 0.3).unwrap(), 100.0, [0.0; 2], 0.0).unwrap()
+fn well() -> With<Sleigh, Bowl> {
+    With { body: Sleigh::new(1.0, 1.0, 0.0).unwrap(), effects: Bowl::new([100.0; 2], [0.0; 2]).unwrap() }
 }
 
 /// The same, to be passed to a method.
@@ -118,7 +119,8 @@ where
         prop_assert_eq!(&memory, &OneStep::<3, 1>::memory(&method), "it remembers what the run does");
         for (at, inner) in &seen {
             let residual = constraint_residual(&system, *at, inner.q(), inner.v())[0];
-            prop_assert!(residual.abs() <= 8.0 * f64::EPSILON, "{:e}", residual);
+            // Speeds of up to 15 m/s, in axes whose angle is rounded.
+            prop_assert!(residual.abs() <= 64.0 * f64::EPSILON, "{:e}", residual);
             // On the motion: where a method of order 16 leads with a quarter of these steps.
             let schedule = Schedule { t0: from, step: 0.25 * (at - from), steps: 4 };
             drive(&system, &mut Gauss::new::<8>(), &schedule, &mut other, ()).unwrap();

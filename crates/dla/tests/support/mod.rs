@@ -15,7 +15,7 @@ use crate::{corners, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
 use models::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, Slope, Torque};
-use sleigh::{CentreOfMass, Guided, RoundWell, Sleigh};
+use sleigh::{CentreOfMass, Guided, Sleigh};
 
 macro_rules! shape {
     ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* } $($more:tt)*) => {
@@ -238,7 +238,6 @@ by_hand! {
     ByHand<3, 1> {
         Sleigh: Sleigh,
         OnTurntable: Guided<0>,
-        RoundWell: RoundWell,
         InBowl: With<Sleigh, Bowl>,
         InOneBowl: With<Sleigh, (Bowl,)>,
         OverHills: With<Sleigh, Hills>,

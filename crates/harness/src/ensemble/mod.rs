@@ -1,9 +1,7 @@
-//! Ensembles: many starts of a system, summed up one by one, on all threads.
+//! Ensembles: many starts of a system, each summed up in a few numbers, in order and on all threads.
 
 mod stream;
 mod summary;
-mod watch;
 
 pub use stream::in_order;
-pub use summary::{Quantities, Summary};
-pub use watch::{Watching, summarise};
+pub use summary::{Summary, summarise};

@@ -4,44 +4,37 @@ use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Members whose results wait in memory for those before them, at most; and groups for each thread, at least.
+/// Members whose results wait in memory for those before them, at most.
 const AHEAD: u64 = 4096;
-const GROUPS_A_THREAD: u64 = 4;
 
-/// Computes members in groups of `size`, on all threads, and hands what the groups give to `sink`, in order and as soon as it is done:
-/// all results that follow on the last one, at least one. `Break` ends it. Once `stops` says so no further group begins; those that have
+/// Computes members, on all threads, and hands what they give to `sink`, in order and as soon as it is done: all results that follow
+/// on the last one, at least one. `Break` ends it. Once `stops` says so no further member begins; those that have
 /// begun are finished and handed on. Where whoever waits for this thread ends it ([`Stop`]), they are not.
 ///
-/// A group is the same members always, counted from zero, and knows nothing of the others, so that the number of threads
-/// (`RAYON_NUM_THREADS`), and where a sequence is taken up again, change no bit. Where one group takes long the others
-/// get some thousand members ahead of it, and then wait: the memory is bounded.
+/// A member knows nothing of the others, so that the number of threads (`RAYON_NUM_THREADS`), and where a sequence is taken up again,
+/// change no bit. Where one member takes long the others get some thousand ahead of it, and then wait: the memory is bounded.
 pub fn in_order<T: Send, E>(
     members: Range<u64>,
-    size: u64,
     stops: impl Fn() -> bool + Sync,
-    each: impl Fn(Range<u64>) -> T + Sync,
+    each: impl Fn(u64) -> T + Sync,
     mut sink: impl FnMut(Vec<T>) -> ControlFlow<E>,
 ) -> ControlFlow<E> {
-    let size = size.max(1);
     prepare_threads();
     let threads = rayon::current_num_threads();
-    let groups = members.start / size..members.end.div_ceil(size);
-    let ahead = (AHEAD / size).max(GROUPS_A_THREAD * threads as u64);
-    let line = Line::new(groups, ahead, threads);
+    let line = Line::new(members, threads);
     let stop = Stop::of_thread();
     let stops = || stops() || stop.asked();
-    let compute = |group: u64| {
-        let begin = group * size;
-        let made = stop.within(|| each(begin..members.end.min(begin + size)));
+    let compute = |member: u64| {
+        let made = stop.within(|| each(member));
         // Members that were ended on the way are no results.
         if !stop.asked() {
-            line.put(group, made);
+            line.put(member, made);
         }
     };
     let work = || {
         let _leaving = Leaving(&line);
-        while let Some(group) = line.next(&stops) {
-            compute(group);
+        while let Some(member) = line.next(&stops) {
+            compute(member);
         }
     };
     std::thread::scope(|scope| {
@@ -51,9 +44,9 @@ pub fn in_order<T: Send, E>(
         (0..missing).for_each(|_| line.leave());
         // Where no thread is to be had this one does the work.
         while missing == threads
-            && let Some(group) = line.next(&stops)
+            && let Some(member) = line.next(&stops)
         {
-            compute(group);
+            compute(member);
             sink(line.ready().unwrap_or_default())?;
         }
         while let Some(ready) = line.ready() {
@@ -66,16 +59,15 @@ pub fn in_order<T: Send, E>(
     })
 }
 
-/// Groups that are to be computed, and results that wait until those before them are there.
+/// Members that are to be computed, and results that wait until those before them are there.
 struct Line<T> {
     state: Mutex<LineState<T>>,
     changed: Condvar,
     end: u64,
-    ahead: u64,
 }
 
 struct LineState<T> {
-    /// The next group to be computed, and the next to be handed on.
+    /// The next member to be computed, and the next to be handed on.
     next: u64,
     handed: u64,
     done: BTreeMap<u64, T>,
@@ -83,9 +75,9 @@ struct LineState<T> {
 }
 
 impl<T> Line<T> {
-    fn new(groups: Range<u64>, ahead: u64, threads: usize) -> Self {
-        let state = LineState { next: groups.start, handed: groups.start, done: BTreeMap::new(), threads };
-        Self { state: Mutex::new(state), changed: Condvar::new(), end: groups.end, ahead }
+    fn new(members: Range<u64>, threads: usize) -> Self {
+        let state = LineState { next: members.start, handed: members.start, done: BTreeMap::new(), threads };
+        Self { state: Mutex::new(state), changed: Condvar::new(), end: members.end }
     }
 
     fn lock(&self) -> MutexGuard<'_, LineState<T>> {
@@ -97,22 +89,22 @@ impl<T> Line<T> {
         self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next group to compute, once there is room for its result; none where all have begun, or none is to begin.
+    /// The next member to compute, once there is room for its result; none where all have begun, or none is to begin.
     fn next(&self, stops: &impl Fn() -> bool) -> Option<u64> {
         let mut state = self.lock();
-        while state.next < self.end && state.next >= state.handed.saturating_add(self.ahead) {
+        while state.next < self.end && state.next >= state.handed.saturating_add(AHEAD) {
             state = self.wait(state);
         }
-        let group = state.next;
-        if group >= self.end || stops() {
+        let member = state.next;
+        if member >= self.end || stops() {
             return None;
         }
         state.next += 1;
-        Some(group)
+        Some(member)
     }
 
-    fn put(&self, group: u64, result: T) {
-        self.lock().done.insert(group, result);
+    fn put(&self, member: u64, result: T) {
+        self.lock().done.insert(member, result);
         self.changed.notify_all();
     }
 
@@ -139,7 +131,7 @@ impl<T> Line<T> {
         }
     }
 
-    /// No further group begins.
+    /// No further member begins.
     fn close(&self) {
         self.lock().next = self.end;
         self.changed.notify_all();

@@ -1,24 +1,20 @@
-use dla::{AnyState, Mechanism};
+use crate::Method;
+use crate::run::integrate_pieces;
+use dla::{Mechanism, Observer, Report, RunError, Schedule, View};
 use lagrangian::linear::larger;
-
-/// A list of numbers: an array, or a vector where their number is not known before.
-pub trait Quantities: AsRef<[f64]> + AsMut<[f64]> + Clone {}
-
-impl<T: AsRef<[f64]> + AsMut<[f64]> + Clone> Quantities for T {}
+use std::ops::ControlFlow;
 
 /// A trajectory in a few numbers: its end, and extremes over the observed nodes.
-///
-/// `Q` is the list of the quantities, an array or a vector.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summary<Q> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
     /// Time of the end (s).
     pub t: f64,
     /// The quantities at the end.
-    pub end: Q,
+    pub end: Vec<f64>,
     /// The least of each.
-    pub low: Q,
+    pub low: Vec<f64>,
     /// The largest of each.
-    pub high: Q,
+    pub high: Vec<f64>,
     /// Energy at the start and at the end (J).
     pub energy: [f64; 2],
     /// `max |E - E0|` (J): an error, where nothing does work.
@@ -28,32 +24,68 @@ pub struct Summary<Q> {
 }
 
 /// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
-pub(super) type Of<'a, Q> = &'a dyn Fn(f64, &[f64], &[f64]) -> Q;
+type Of<'a> = &'a dyn Fn(f64, &[f64], &[f64]) -> Vec<f64>;
 
-impl<Q: Quantities> Summary<Q> {
-    /// The summary of the first node alone.
-    pub(super) fn first(system: &dyn Mechanism, t: f64, state: &AnyState, of: Of<'_, Q>) -> Self {
-        let end = of(t, &state.unwrapped(), state.v());
-        let energy = system.energy(t, state.q(), state.v());
-        let (low, high) = (end.clone(), end.clone());
-        let mut first = Self { t, end, low, high, energy: [energy; 2], energy_deviation: 0.0, constraint: 0.0 };
-        first.look(system, t, state);
-        first
-    }
+/// The summary of one trajectory by any method, over every so many of its nodes and the last; of one that fails that of its valid part,
+/// with the failure.
+pub fn summarise(
+    system: &dyn Mechanism,
+    method: &Method,
+    (q, v): (&[f64], &[f64]),
+    (schedule, every): (&Schedule, u64),
+    of: Of<'_>,
+) -> (Option<Summary>, Option<RunError>) {
+    let mut looking = Looking { every: every.max(1), of, seen: None, last: None };
+    let outcome = integrate_pieces(system, method, schedule, &mut system.state(q, v), &mut looking);
+    (looking.seen, outcome.err())
+}
 
-    /// Takes in one more node.
-    pub(super) fn see(&mut self, system: &dyn Mechanism, t: f64, state: &AnyState, of: Of<'_, Q>) {
-        (self.t, self.end) = (t, of(t, &state.unwrapped(), state.v()));
-        for (k, value) in self.end.as_ref().iter().enumerate() {
-            let (low, high) = (&mut self.low.as_mut()[k], &mut self.high.as_mut()[k]);
-            (*low, *high) = (low.min(*value), high.max(*value));
+/// The observer of one trajectory.
+struct Looking<'a> {
+    every: u64,
+    of: Of<'a>,
+    seen: Option<Summary>,
+    last: Option<u64>,
+}
+
+impl Looking<'_> {
+    fn see(&mut self, node: &View<'_>) {
+        if self.last.replace(node.k) == Some(node.k) {
+            return;
         }
-        self.energy[1] = system.energy(t, state.q(), state.v());
-        self.look(system, t, state);
+        let (t, energy) = (node.t, node.energy());
+        let end = (self.of)(t, &node.state.unwrapped(), node.state.v());
+        let seen = self.seen.get_or_insert_with(|| Summary {
+            t,
+            end: Vec::new(),
+            low: end.clone(),
+            high: end.clone(),
+            energy: [energy; 2],
+            energy_deviation: 0.0,
+            constraint: 0.0,
+        });
+        for (k, value) in end.iter().enumerate() {
+            (seen.low[k], seen.high[k]) = (seen.low[k].min(*value), seen.high[k].max(*value));
+        }
+        (seen.t, seen.end, seen.energy[1]) = (t, end, energy);
+        seen.energy_deviation = larger(seen.energy_deviation, (energy - seen.energy[0]).abs());
+        seen.constraint = larger(seen.constraint, node.constraint());
+    }
+}
+
+impl Observer for Looking<'_> {
+    fn start(&mut self, node: &View<'_>) {
+        self.see(node);
     }
 
-    fn look(&mut self, system: &dyn Mechanism, t: f64, state: &AnyState) {
-        self.energy_deviation = larger(self.energy_deviation, (self.energy[1] - self.energy[0]).abs());
-        self.constraint = larger(self.constraint, system.largest_residual(t, state.q(), state.v()));
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
+        if node.k.is_multiple_of(self.every) {
+            self.see(node);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn end(&mut self, node: &View<'_>) {
+        self.see(node);
     }
 }

@@ -1,20 +1,27 @@
 //! Lyapunov exponents: of motions of which they are known, by both ways to differentiate a step, and of two strange attractors.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{Gauss, OneStep, Schedule, Sensitivity, State, drive};
+use dla::{FullMechanics, Gauss, Schedule, Sensitivity, State};
 use harness::Method;
 use harness::analysis::{
-    Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, in_parallel, kaplan_yorke, lyapunov_by,
+    Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, in_parallel, kaplan_yorke, lyapunov,
 };
-use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System, With};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System, With};
 use nalgebra::DMatrix;
 use sleigh::effects::{Bowl, EggCrate};
 use sleigh::{Sleigh, SleighState};
 
 /// A point above a saddle, on a plane, with friction along `y`: `x'' = k^2 x`, `y'' = -g y'`, `z' = 0`.
+#[derive(Clone, Copy)]
 struct Saddle {
     /// Whether it knows these equations, or has them derived.
     by_hand: bool,
+}
+
+impl Piecewise for Saddle {
+    fn piece(&self, _t: f64) -> Self {
+        *self
+    }
 }
 
 const GROWTH: f64 = 0.7;
@@ -45,35 +52,27 @@ impl Reduced<3, 1> for Saddle {
     }
 }
 
-/// Exponents of a run with `gauss8`, or with whichever method has that name.
-pub(crate) fn exponents_by<Sys, Stepper>(
-    (name, mut stepper): (&str, Stepper),
-    system: &Sys,
+/// Exponents of a run by the method of that name.
+pub(crate) fn exponents_by(
+    name: &str,
+    system: &impl FullMechanics<3, 1>,
     (q, v): ([f64; 3], [f64; 3]),
     (step, settle, steps): (f64, u64, u64),
-) -> Lyapunov
-where
-    Sys: System<3, 1>,
-    Stepper: OneStep<3, 1>,
-{
+) -> Lyapunov {
     let schedule = Schedule { t0: 0.0, step, steps };
     let request = LyapunovRequest { schedule, settle, exponents: None, q, v };
-    let method = Method::named(name, None).unwrap();
-    let found = lyapunov_by(system, &method, &request, |schedule, state, observer| {
-        drive(system, &mut stepper, schedule, state, observer)
-    });
-    let found = found.unwrap();
+    let found = lyapunov((system, &()), &Method::named(name, None).unwrap(), &request, &mut ()).unwrap();
     assert!(found.failure.is_none(), "{:?}", found.failure);
     assert_relative_eq!(found.time, step * steps as f64, max_relative = 1e-12);
     found
 }
 
-pub(crate) fn exponents<Sys: System<3, 1>>(
-    system: &Sys,
+pub(crate) fn exponents(
+    system: &impl FullMechanics<3, 1>,
     start: ([f64; 3], [f64; 3]),
     steps: (f64, u64, u64),
 ) -> Lyapunov {
-    exponents_by(("gauss8", Gauss::new::<4>()), system, start, steps)
+    exponents_by("gauss8", system, start, steps)
 }
 
 fn egg_crate() -> (With<Sleigh, EggCrate>, ([f64; 3], [f64; 3])) {
@@ -134,10 +133,7 @@ fn check_straight_motion(step: f64, settle: u64, [by_gauss, by_dla]: [u64; 2]) {
     let rate = -sleigh.spin_gain() * 0.9;
     for (name, found) in [
         ("gauss8", exponents(&sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (step, settle, by_gauss))),
-        (
-            "dla",
-            exponents_by(("dla", dla::Dla::midpoint()), &sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (step, settle, by_dla)),
-        ),
+        ("dla", exponents_by("dla", &sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (step, settle, by_dla))),
     ] {
         let neutral = 2.0 * found.time.ln() / found.time;
         // The discrete map has (1 - h c u/2) / (1 + h c u/2) in the place of exp(-h c u).
@@ -237,7 +233,14 @@ fn check_far(steps: u64) {
 }
 
 /// A system that hides what it knows by hand.
+#[derive(Clone)]
 struct Plain<Sys>(Sys);
+
+impl<Sys: Clone> Piecewise for Plain<Sys> {
+    fn piece(&self, _t: f64) -> Self {
+        self.clone()
+    }
+}
 
 impl<Sys: System<3, 1>> System<3, 1> for Plain<Sys> {
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -265,9 +268,9 @@ fn three_ways_to_differentiate_a_step_in_full() {
 /// Stages on dual numbers, with reduced equations by hand and without, and the implicit function theorem: the same exponents.
 fn check_three_ways(steps: u32) {
     let (system, (q, v)) = valley();
-    let by_hand = exponents_by(("gauss4", Gauss::new::<2>()), &system, (q, v), (0.1, 0, steps.into()));
+    let by_hand = exponents_by("gauss4", &system, (q, v), (0.1, 0, steps.into()));
     let plain = Plain(valley().0);
-    let hidden = exponents_by(("gauss4", Gauss::new::<2>()), &plain, (q, v), (0.1, 0, steps.into()));
+    let hidden = exponents_by("gauss4", &plain, (q, v), (0.1, 0, steps.into()));
     assert_abs_diff_eq!(by_hand.divergence_mean, hidden.divergence_mean, epsilon = 1e-12);
     for (one, other) in by_hand.exponents.iter().zip(&hidden.exponents) {
         assert_abs_diff_eq!(one, other, epsilon = 1e-9);
@@ -295,15 +298,13 @@ fn what_has_no_exponents_says_why() {
     ] {
         let request = LyapunovRequest { schedule, settle: 0, exponents, q, v };
         let method = Method::named(name, None).unwrap();
-        let error = lyapunov_by(&system, &method, &request, |_, _, _| panic!("nothing is to run")).unwrap_err();
+        let error = lyapunov((&system, &()), &method, &request, &mut ()).unwrap_err();
         assert!(error.to_string().contains(told), "{error}");
         assert_eq!(has_tangents(&method).is_err(), matches!(error, LyapunovError::Sensitivity(_)), "{name}");
     }
     // The start of a run that fails keeps what it has: here nothing.
     let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v: [f64::NAN; 3] };
     let method = Method::named("gauss8", None).unwrap();
-    let found = lyapunov_by(&system, &method, &request, |schedule, state, observer| {
-        drive(&system, &mut Gauss::new::<4>(), schedule, state, observer)
-    });
+    let found = lyapunov((&system, &()), &method, &request, &mut ());
     assert!(found.unwrap().failure.is_some());
 }

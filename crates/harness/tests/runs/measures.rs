@@ -1,6 +1,6 @@
 //! What flow and methods do to areas of starts of the free sleigh, whose invariant measure is `du domega / |omega|`.
 
-use approx::{assert_abs_diff_eq, assert_relative_eq};
+use approx::assert_abs_diff_eq;
 use dla::{Composition, Differentiable, Dla, Gauss, Lobatto, OneStep, Sensitivity, State};
 use harness::Rk4Reduced;
 use harness::analysis::{enclosed_area, measure_defect};
@@ -58,58 +58,6 @@ proptest! {
 fn no_curve_no_area() {
     assert_abs_diff_eq!(enclosed_area(&[]), 0.0);
     assert_abs_diff_eq!(enclosed_area(&[[1.0, 2.0]]), 0.0);
-}
-
-#[test]
-fn the_canonical_scheme() {
-    // The speed is 0.4 m/s at least and grows, and `d(area)/dt = -c u area` with `c = 0.4` 1/m.
-    check_canonical(200, (-0.4_f64 * 0.4 * 4.0).exp());
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_canonical_scheme_at_length() {
-    check_canonical(1000, 1e-3);
-}
-
-/// The explicit scheme keeps the weighted area to round-off while the plain one shrinks to a part of what it was; the spin keeps its
-/// sign; and it is of second order.
-fn check_canonical(steps: u32, part: f64) {
-    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
-    let mut curve = ring([0.6, -0.7], 0.2, 128);
-    let [plain, weighted] = areas(&curve);
-    let mut worst = 0.0f64;
-    for _ in 0..steps {
-        curve.iter_mut().for_each(|state| *state = sleigh.canonical_step(0.02, state));
-        worst = worst.max((areas(&curve)[1] - weighted).abs());
-    }
-    let left = areas(&curve)[0] / plain;
-    println!("weighted area: off by {worst:.1e} of {weighted:.3}; plain area: {left:.1e} of what it was");
-    // The rounding of the steps, at random, in each of the coordinates, along a curve of length about 8.
-    assert!(worst < 8.0 * f64::EPSILON * f64::from(steps).sqrt() * 4.0, "{worst:e}");
-    assert!(left < part && curve.iter().all(|state| state.turn_rate < 0.0));
-
-    let start = SleighState { x: 0.3, y: -0.2, heading: 0.5, speed: -0.6, turn_rate: 1.1 };
-    let truth = Exact::new(&sleigh, &start).unwrap().at(2.0);
-    let error = |steps: u32| {
-        let end = (0..steps).fold(start, |state, _| sleigh.canonical_step(2.0 / f64::from(steps), &state));
-        let off = [end.x - truth.x, end.y - truth.y, end.heading - truth.heading];
-        off.into_iter()
-            .chain([end.speed - truth.speed, end.turn_rate - truth.turn_rate])
-            .fold(0.0, |m, x| x.abs().max(m))
-    };
-    let order = (error(80) / error(160)).log2();
-    assert_abs_diff_eq!(order, 2.0, epsilon = 0.02);
-    // Backward is back.
-    let there = sleigh.canonical_step(0.1, &start);
-    let back = sleigh.canonical_step(-0.1, &there);
-    assert_relative_eq!(back.x, start.x, epsilon = 1e-15);
-    assert_relative_eq!(back.turn_rate, start.turn_rate, max_relative = 1e-15);
-    // A balanced sleigh runs its circle exactly.
-    let balanced = Sleigh::new(1.0, 1.0, 0.0).unwrap();
-    let (end, truth) = (balanced.canonical_step(0.7, &start), Exact::new(&balanced, &start).unwrap().at(0.7));
-    assert_abs_diff_eq!(end.x, truth.x, epsilon = 1e-15);
-    assert_abs_diff_eq!(end.y, truth.y, epsilon = 1e-15);
 }
 
 /// `ln (rho(z1) |det D Phi| / rho(z0))` of one step, with `rho = 1/|omega|`.

@@ -2,12 +2,12 @@
 
 use crate::runs::chaos::{exponents, exponents_by};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{Dla, Gauss, Schedule, drive};
+use dla::Schedule;
 use harness::Method;
 use harness::analysis::{
-    Evidence, Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, PARTS, Undecided, lyapunov_by,
+    Evidence, Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, PARTS, Undecided, lyapunov,
 };
-use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System, With};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, Thrust};
 use sleigh::{Sleigh, SleighState};
@@ -143,10 +143,7 @@ fn on_a_ridge_a_sleigh_runs_away_in_full() {
         let schedule = Schedule { t0: 0.0, step: 0.05, steps };
         let request = LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0, v: start.1 };
         let method = Method::named("gauss8", None).unwrap();
-        let found = lyapunov_by(&ridge, &method, &request, |schedule, state, observer| {
-            drive(&ridge, &mut Gauss::new::<4>(), schedule, state, observer)
-        });
-        found.unwrap()
+        lyapunov((&ridge, &()), &method, &request, &mut ()).unwrap()
     };
     // Later rounding takes the digits of all exponents but the largest, also before anything is counted.
     let one = by_gauss8(120, 1200, 1);
@@ -227,11 +224,18 @@ fn to_and_fro(speeds: &[f64], steps: Steps) -> usize {
 }
 
 /// Two springs and a friction, on a plane: `x'' = -x - g x'`, `y'' = -k^2 y`, `z' = 0`.
+#[derive(Clone, Copy)]
 struct Springs {
     /// Whether it knows these equations, or has them derived.
     by_hand: bool,
     friction: f64,
     frequency: f64,
+}
+
+impl Piecewise for Springs {
+    fn piece(&self, _t: f64) -> Self {
+        *self
+    }
 }
 
 impl System<3, 1> for Springs {
@@ -318,7 +322,14 @@ fn springs_repeat_or_not_at_length() {
 }
 
 /// A system that knows reduced equations by hand, and wrong ones.
+#[derive(Clone, Copy)]
 struct Wrong(Sleigh);
+
+impl Piecewise for Wrong {
+    fn piece(&self, _t: f64) -> Self {
+        *self
+    }
+}
 
 impl System<3, 1> for Wrong {
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -360,16 +371,13 @@ fn check_sums(steps: u64) {
     let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v };
     let method = Method::named("dla", None).unwrap();
     let system = Wrong(sleigh());
-    let found = lyapunov_by(&system, &method, &request, |schedule, state, observer| {
-        drive(&system, &mut Dla::midpoint(), schedule, state, observer)
-    });
-    let failure = found.unwrap().failure;
+    let failure = lyapunov((&system, &()), &method, &request, &mut ()).unwrap().failure;
     let Some(LyapunovFailure::Volumes { sums: [by_steps, by_flow], .. }) = failure else { panic!("{failure:?}") };
     assert_abs_diff_eq!(by_steps, -0.4, epsilon = 1e-3);
     assert_abs_diff_eq!(by_flow, -0.44, epsilon = 1e-12);
     // The right ones agree, with steps that are not short for a method of second order too.
     for step in [0.05, 0.5] {
-        exponents_by(("dla", Dla::midpoint()), &sleigh(), (q, v), (step, 0, steps));
+        exponents_by("dla", &sleigh(), (q, v), (step, 0, steps));
     }
 }
 

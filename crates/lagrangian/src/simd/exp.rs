@@ -74,7 +74,7 @@ fn power_of_two<S: Simd, const R: usize>(k: Pack<S, R>) -> Pack<S, R> {
 
 #[cfg(test)]
 mod tests {
-    use crate::simd::{Kernel, Pack, Simd, dispatch, dispatch_widest};
+    use crate::simd::{Kernel, Pack, Simd, dispatch};
 
     struct Exponentials([f64; 8]);
     impl Kernel for Exponentials {
@@ -90,16 +90,15 @@ mod tests {
         let mut x = -750.0f64;
         while x < 715.0 {
             let at: [f64; 8] = crate::from_fn(|i| x + 0.0137 * i as f64);
-            for found in [Some(dispatch_widest(Exponentials(at))), dispatch(Exponentials(at))].into_iter().flatten() {
-                for i in 0..8 {
-                    let (expected, least) = (at[i].exp(), f64::from_bits(1));
-                    approx::assert_relative_eq!(found[i], expected, max_relative = 2.0 * f64::EPSILON, epsilon = least);
-                }
+            let Some(found) = dispatch(Exponentials(at)) else { return };
+            for i in 0..8 {
+                let (expected, least) = (at[i].exp(), f64::from_bits(1));
+                approx::assert_relative_eq!(found[i], expected, max_relative = 2.0 * f64::EPSILON, epsilon = least);
             }
             x += 0.1119;
         }
         let ends = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, 1e300, -1e300, 1e-300];
-        let [none, rest @ ..] = dispatch_widest(Exponentials(ends));
+        let Some([none, rest @ ..]) = dispatch(Exponentials(ends)) else { return };
         assert!(none.is_nan());
         let expected = [f64::INFINITY, 0.0, 1.0, 1.0, f64::INFINITY, 0.0, 1.0];
         assert_eq!(rest.map(f64::to_bits), expected.map(f64::to_bits));

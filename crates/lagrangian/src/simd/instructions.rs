@@ -48,18 +48,3 @@ impl Simd for pulp::x86::V4 {
         pulp::cast(self.avx512f._mm512_slli_epi64::<52>(pulp::cast(x)))
     }
 }
-
-impl Simd for pulp::Scalar {
-    #[inline(always)]
-    fn of_this_machine() -> Self {
-        Self::new()
-    }
-    #[inline(always)]
-    fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
-        x
-    }
-    #[inline(always)]
-    fn as_exponent(self, x: Self::u64s) -> Self::u64s {
-        x << 52
-    }
-}

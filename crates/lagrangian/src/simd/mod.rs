@@ -50,26 +50,6 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     None
 }
 
-/// Runs a kernel with the widest registers there are, or one number after another where none are known here: for many
-/// trajectories, whose operations are independent, so that throughput counts and not latency.
-#[inline(always)]
-pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use build::{NARROW, NOT_WIDE, WIDE};
-        if !NOT_WIDE && let Some(simd) = pulp::x86::V4::try_new() {
-            return run::<_, _, 1>(simd, kernel);
-        }
-        if !WIDE && let Some(simd) = pulp::x86::V3::try_new() {
-            return run::<_, _, 2>(simd, kernel);
-        }
-        if WIDE || NARROW {
-            unreachable!("the machine is not one that this program was built for");
-        }
-    }
-    kernel.run::<_, 8>(pulp::Scalar::new())
-}
-
 /// The name of what kernels run on here, on which the last bit of results depends.
 #[must_use]
 pub fn instructions() -> &'static str {
@@ -80,14 +60,12 @@ pub fn instructions() -> &'static str {
             R
         }
     }
-    match (dispatch(Registers), dispatch_widest(Registers), cfg!(target_feature = "fma")) {
-        (Some(1), _, true) => "avx512, fused everywhere",
-        (Some(1), _, false) => "avx512",
-        (Some(_), 1, true) => "avx512 in halves, fused everywhere",
-        (Some(_), 1, false) => "avx512 in halves",
-        (Some(_), _, true) => "avx2, fused everywhere",
-        (Some(_), _, false) => "avx2",
-        (None, ..) => "without vectors",
+    match (dispatch(Registers), cfg!(target_feature = "fma")) {
+        (Some(1), true) => "avx512, fused everywhere",
+        (Some(1), false) => "avx512",
+        (Some(_), true) => "avx2, fused everywhere",
+        (Some(_), false) => "avx2",
+        (None, _) => "without vectors",
     }
 }
 

@@ -146,17 +146,6 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
-    /// The smaller of this number and the other, in every lane; where one is NaN the result depends on the machine.
-    #[must_use]
-    #[inline(always)]
-    pub fn min(self, o: Self) -> Self {
-        self.zip(
-            o,
-            #[inline(always)]
-            |s, m, x| s.min_f64s(m, x),
-        )
-    }
-
     /// The largest of the numbers, where all are numbers.
     #[must_use]
     #[inline(always)]

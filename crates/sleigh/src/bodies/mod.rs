@@ -5,12 +5,10 @@ mod guided;
 mod guided_motion;
 mod moments;
 mod path;
-mod round_well;
 
 pub use flywheel::Flywheel;
 pub use guided::{Guide, Guided};
 pub use path::ClosedPath;
-pub use round_well::RoundWell;
 
 use crate::Sleigh;
 use lagrangian::Piecewise;

@@ -3,12 +3,12 @@ use lagrangian::mul_add;
 use std::f64::consts::FRAC_PI_2;
 
 /// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.
-pub(crate) const SINE: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
-pub(crate) const COSINE: [f64; 5] = [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
+const SINE: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
+const COSINE: [f64; 5] = [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
 
 /// Half the turn of a step up to which three terms of the series are enough (rad), and that up to which five are.
 const NARROW: f64 = 0.04;
-pub(crate) const BROAD: f64 = 0.25;
+const BROAD: f64 = 0.25;
 
 /// Sine and cosine of half the turn of a step, which must stay below a right angle.
 #[inline(always)]

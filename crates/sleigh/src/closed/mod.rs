@@ -2,13 +2,11 @@
 //! sleigh's own, which agrees with [`Dla`] to rounding.
 
 mod differences;
-mod ensemble;
 mod foreseen;
 mod form;
 mod free;
 mod half_turn;
 mod heading;
-mod lanes;
 mod least_spin;
 mod map;
 mod mean_equations;
@@ -21,7 +19,6 @@ mod spin_equation;
 mod spin_memory;
 mod step;
 
-pub use ensemble::ClosedEnsemble;
 pub use form::ClosedForm;
 pub use map::ClosedMap;
 pub use memory::Memory;

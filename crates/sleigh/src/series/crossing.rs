@@ -75,7 +75,6 @@ impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> SeriesCrossing<'_, See> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Origin;
     use super::*;
     use lagrangian::simd::{in_fours, in_plain_fours};
     use proptest::prelude::*;
@@ -99,7 +98,7 @@ mod tests {
             // Of another sign than the lead the gain would be that of no body, whose spin could grow without bounds.
             let gain = share * lead;
             let damping = if damped { drag } else { [0.0; 2] };
-            let axes = OwnAxes { origin: Origin::Anywhere, inverse: [1.0; 2], lead, gain, along, turning, damping };
+            let axes = OwnAxes { center: None, inverse: [1.0; 2], lead, gain, along, turning, damping };
             let bits = |crossed: SeriesEnd| (crossed.end.map(f64::to_bits), crossed.turn.to_bits());
             let mut seen = [Vec::new(), Vec::new()];
             let [one, other] = &mut seen;

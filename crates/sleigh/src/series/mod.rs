@@ -2,14 +2,11 @@
 
 mod coefficients;
 mod crossing;
-mod eight;
-mod ensemble;
 mod own_axes;
 mod pace;
 mod place;
 
-pub use ensemble::TaylorEnsemble;
-pub use own_axes::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
+pub use own_axes::{InOwnAxes, OwnAxes, OwnPush, PushInOwnAxes};
 
 use crossing::{MAX_STEPS, SeriesCrossing, SeriesEnd};
 use dla::{MeanPower, Mechanics, OneStep, OwnStep, State, StepError, StepReport, power};
@@ -75,15 +72,15 @@ impl<'a> SeriesDeparture<'a> {
     #[inline(always)]
     fn new(axes: OwnAxes, system: &dyn Mechanics<3, 1>, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
         let (q0, [u, omega, _]) = (*state.q(), state.quasi_velocities(system, t)?);
-        let place = place(axes.origin, &q0);
+        let place = place(axes.center, &q0);
         Ok(Self { axes, state, place, start: [omega, u, place[1], place[0]] })
     }
 
     /// The state at the time `t` (s), where the motion has come so far.
     #[inline(always)]
     fn moved(&self, system: &dyn Mechanics<3, 1>, t: f64, crossed: &SeriesEnd) -> Result<State<3>, StepError> {
-        let Self { axes, state, place, .. } = self;
-        let increment = increment(axes.origin, state.q(), *place, crossed);
+        let Self { state, place, .. } = self;
+        let increment = increment(state.q()[2], *place, crossed);
         let xi1 = [crossed.end[1], crossed.end[0], 0.0];
         state.stays_finite(&increment, &xi1)?;
         // The velocity is on the constraint at the heading without its turns, of which there may be many.

@@ -13,8 +13,8 @@ use lagrangian::With;
 /// Krishnaprasad, Marsden and Murray 1996, Arch. Rational Mech. Anal. 136, 21-99, by the turns about a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OwnAxes {
-    /// Where the place is counted from.
-    pub origin: Origin,
+    /// The point of the plane that the place is counted from (m), where that matters.
+    pub center: Option<[f64; 2]>,
     /// The inverse mass (1/kg), and the inverse moment of inertia about the contact point (1/(kg m^2)).
     pub inverse: [f64; 2],
     /// The distance `a` of the centre of mass ahead of the contact point (m).
@@ -29,22 +29,11 @@ pub struct OwnAxes {
     pub damping: [f64; 2],
 }
 
-/// Where `(X, Y)` is counted from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Origin {
-    /// The first two coordinates are `(X, Y)` themselves.
-    Coordinates,
-    /// They are a place on the plane, and this is a point of it (m).
-    Point([f64; 2]),
-    /// They are a place on the plane, and any point will do.
-    Anywhere,
-}
-
 /// A force on such a body, `F_0 + F_1 X - D_u u` along it at the contact point (N) and the torque `T_0 + T_1 Y - D_omega omega` about it
 /// (N m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OwnPush {
-    /// What `(X, Y)` is counted from, where that matters.
+    /// The point of the plane that `(X, Y)` is counted from (m), where that matters.
     pub center: Option<[f64; 2]>,
     /// `F_0` (N) and `F_1` (N/m).
     pub along: [f64; 2],
@@ -54,6 +43,14 @@ pub struct OwnPush {
     pub drag: [f64; 2],
 }
 
+/// The point that both are counted from; none where they are two.
+fn common(one: Option<[f64; 2]>, other: Option<[f64; 2]>) -> Option<Option<[f64; 2]>> {
+    match (one, other) {
+        (Some(one), Some(other)) if one.map(f64::to_bits) != other.map(f64::to_bits) => None,
+        _ => Some(one.or(other)),
+    }
+}
+
 impl OwnPush {
     /// No force.
     pub const NOTHING: Self = Self { center: None, along: [0.0; 2], turning: [0.0; 2], drag: [0.0; 2] };
@@ -61,10 +58,7 @@ impl OwnPush {
     /// Both together; none where their places are counted from two points.
     #[must_use]
     pub fn and(self, other: Self) -> Option<Self> {
-        let center = match (self.center, other.center) {
-            (Some(one), Some(two)) if one.map(f64::to_bits) != two.map(f64::to_bits) => return None,
-            (one, two) => one.or(two),
-        };
+        let center = common(self.center, other.center)?;
         let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
         Some(Self {
             center,
@@ -85,17 +79,12 @@ impl OwnAxes {
     #[must_use]
     pub fn pushed(self, push: OwnPush) -> Option<Self> {
         let [per_mass, per_inertia] = self.inverse;
-        let origin = match (self.origin, push.center) {
-            (origin, None) => origin,
-            (Origin::Anywhere, Some(center)) => Origin::Point(center),
-            (Origin::Point(point), Some(center)) if point.map(f64::to_bits) == center.map(f64::to_bits) => self.origin,
-            (Origin::Coordinates | Origin::Point(_), Some(_)) => return None,
-        };
+        let center = common(self.center, push.center)?;
         let more = |a: [f64; 2], b: [f64; 2], factor: f64| [b[0].mul_add(factor, a[0]), b[1].mul_add(factor, a[1])];
         let (along, turning) = (more(self.along, push.along, per_mass), more(self.turning, push.turning, per_inertia));
         let [d_u, d_omega] = self.damping;
         let damping = [push.drag[0].mul_add(per_mass, d_u), push.drag[1].mul_add(per_inertia, d_omega)];
-        Some(Self { origin, along, turning, damping, ..self })
+        Some(Self { center, along, turning, damping, ..self })
     }
 }
 
@@ -117,7 +106,7 @@ pub trait PushInOwnAxes<B> {
 impl InOwnAxes for Sleigh {
     fn own_axes(&self) -> Option<OwnAxes> {
         Some(OwnAxes {
-            origin: Origin::Anywhere,
+            center: None,
             inverse: self.inverse(),
             lead: self.offset(),
             gain: self.spin_gain(),

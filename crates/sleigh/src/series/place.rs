@@ -1,4 +1,3 @@
-use super::Origin;
 use super::crossing::SeriesEnd;
 
 /// The place `(X, Y)` in axes of this heading, from a place on the plane.
@@ -8,27 +7,18 @@ fn turned_back([x, y]: [f64; 2], heading: f64) -> [f64; 2] {
     [cos * x + sin * y, cos * y - sin * x]
 }
 
-/// The place `(X, Y)` where a step begins.
+/// The place `(X, Y)` where a step begins, counted from `center`; without one, from there.
 #[inline(always)]
-pub(crate) fn place(origin: Origin, q0: &[f64; 3]) -> [f64; 2] {
-    match origin {
-        Origin::Coordinates => [q0[0], q0[1]],
-        Origin::Point(center) => turned_back([q0[0] - center[0], q0[1] - center[1]], q0[2]),
-        Origin::Anywhere => [0.0; 2],
-    }
+pub(crate) fn place(center: Option<[f64; 2]>, q0: &[f64; 3]) -> [f64; 2] {
+    center.map_or([0.0; 2], |[x, y]| turned_back([q0[0] - x, q0[1] - y], q0[2]))
 }
 
-/// The increment of the coordinates from `q0`, with the place `(X, Y)` there, to the end of an interval.
+/// The increment of the coordinates to the end of an interval, from the heading and the place `(X, Y)` at its beginning.
 #[inline(always)]
-pub(crate) fn increment(origin: Origin, q0: &[f64; 3], [x0, y0]: [f64; 2], crossed: &SeriesEnd) -> [f64; 3] {
+pub(crate) fn increment(heading: f64, [x0, y0]: [f64; 2], crossed: &SeriesEnd) -> [f64; 3] {
     let SeriesEnd { end: [_, _, y, x], turn } = *crossed;
-    let [dx, dy] = match origin {
-        Origin::Coordinates => [x - x0, y - y0],
-        Origin::Point(_) | Origin::Anywhere => {
-            // Both places in the axes of the beginning: what is common to them is not turned.
-            let [x, y] = turned_back([x, y], -turn);
-            turned_back([x - x0, y - y0], -q0[2])
-        }
-    };
+    // Both places in the axes of the beginning: what is common to them is not turned.
+    let [x, y] = turned_back([x, y], -turn);
+    let [dx, dy] = turned_back([x - x0, y - y0], -heading);
     [dx, dy, turn]
 }

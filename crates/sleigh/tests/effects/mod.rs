@@ -10,5 +10,4 @@ mod own_axes;
 mod paths;
 mod pushed;
 mod refusals;
-mod round_well;
 mod time;

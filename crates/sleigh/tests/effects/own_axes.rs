@@ -4,8 +4,8 @@ use approx::assert_abs_diff_eq;
 use lagrangian::{Reduced, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, QuadraticDrag, Thrust, Torque};
-use sleigh::series::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
-use sleigh::{RoundWell, Sleigh, SleighState, TimeFunction};
+use sleigh::series::{InOwnAxes, OwnAxes, PushInOwnAxes};
+use sleigh::{Sleigh, SleighState, TimeFunction};
 
 /// `(u', omega')` at this place in the axes of the sleigh.
 fn accelerations(axes: &OwnAxes, [x, y]: [f64; 2], [u, omega]: [f64; 2]) -> [f64; 2] {
@@ -38,12 +38,9 @@ proptest! {
         let (thrust, torque) = (Thrust::new(push[0]).unwrap(), Torque::new(push[1]).unwrap());
         let effects = (bowl(), thrust, torque, Drag::new(drag[0], drag[1]).unwrap());
         let pushed = With { body: sleigh, effects };
-        let well = RoundWell::new(sleigh, k, center).unwrap();
-        let in_well = well.coordinates(&state).0;
         let cases = [
             (sleigh.own_axes(), [0.0; 2], sleigh.reduced_motion(0.0, &q, &xi)),
             (pushed.own_axes(), own(&state, center), pushed.reduced_motion(0.0, &q, &xi)),
-            (well.own_axes(), [in_well[0], in_well[1]], well.reduced_motion(0.0, &in_well, &xi)),
         ];
         for (axes, place, expected) in cases {
             let (found, expected) = (accelerations(&axes.unwrap(), place, [z[3], z[4]]), expected.unwrap());
@@ -52,9 +49,8 @@ proptest! {
                 assert_abs_diff_eq!(found[i], expected[i], epsilon = 1e-11 * (1.0 + expected[i].abs()));
             }
         }
-        prop_assert_eq!(sleigh.own_axes().unwrap().origin, Origin::Anywhere);
-        prop_assert_eq!(pushed.own_axes().unwrap().origin, Origin::Point(center));
-        prop_assert_eq!(well.own_axes().unwrap().origin, Origin::Coordinates);
+        prop_assert_eq!(sleigh.own_axes().unwrap().center, None);
+        prop_assert_eq!(pushed.own_axes().unwrap().center, Some(center));
         // A list of effects is what a tuple of them is.
         let list = With { body: sleigh, effects: vec![bowl(), bowl()] };
         prop_assert_eq!(list.own_axes(), With { body: sleigh, effects: (bowl(), bowl()) }.own_axes());
@@ -77,8 +73,4 @@ fn others_have_none() {
     assert!(axes(EggCrate::new(0.1, [1.0, 1.0]).unwrap()).is_none());
     let swing = || TimeFunction::Sine { amplitude: 0.5, frequency: 2.0, phase: 0.3 };
     assert!(axes(Thrust::new(swing()).unwrap()).is_none() && axes(Torque::new(swing()).unwrap()).is_none());
-    // A well that is already in the coordinates cannot be counted from a point of the plane.
-    let own = RoundWell::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.1, [0.0; 2]).unwrap().own_axes().unwrap();
-    assert!(own.pushed(OwnPush { center: Some([0.0; 2]), ..OwnPush::NOTHING }).is_none());
-    assert_eq!(own.pushed(OwnPush::NOTHING), Some(own));
 }

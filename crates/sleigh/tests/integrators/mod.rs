@@ -1,5 +1,4 @@
 //! The sleigh's own integrators: the map in closed form, and Taylor series.
 
-mod lanes;
 mod map;
 mod taylor;

@@ -1,6 +1,5 @@
-//! The maps of the sleigh by themselves: its explicit step, the planimeter's map of headings, plans that park it.
+//! The maps of the sleigh by themselves: the planimeter's map of headings, plans that park it.
 
-mod canonical;
 mod headings;
 mod moebius;
 mod parking;
