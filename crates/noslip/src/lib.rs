@@ -6,7 +6,6 @@
 //! |---|---|
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
-//! | give a body an attitude that ends nowhere; refuse steps near where other coordinates end | [`Attitude`], [`InChart`] |
 //! | add what acts on a body; derive a basis of the admissible velocities | [`Effect`], [`With`]; [`WithBasis`] |
 //! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
@@ -34,15 +33,15 @@ pub use npz::write_npz;
 pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite,
-    Hint, History, InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
-    Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View,
-    Watch, consistent_start, recommend_step, slip,
+    Hint, History, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation,
+    RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch,
+    consistent_start, recommend_step, slip,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
-    Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar,
-    ScalarFunction, Symmetrised, System, Trapezoid, With, WithBasis, classify, constraint_residual, energy,
-    mass_matrix, momentum, vectorized,
+    self, AdmissibleBasis, Alpha, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, Effect,
+    HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar, ScalarFunction,
+    Symmetrised, System, Trapezoid, With, WithBasis, classify, constraint_residual, energy, mass_matrix, momentum,
+    vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 
