@@ -5,8 +5,6 @@
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-mod models;
-
 use criterion::{Criterion, criterion_group};
 use dla::{Dla, Form, OneStep, Schedule, State, drive};
 use harness::{Rk4, Rk4Projected, Rk4Reduced};
@@ -161,29 +159,10 @@ fn ratios() {
     }
 }
 
-/// The generic step of every model against the one by hand, each the fastest of rounds in which both run.
-fn models() {
-    const ROUNDS: usize = 101;
-    let time = |run: &dyn Fn()| {
-        let begin = Instant::now();
-        run();
-        begin.elapsed().as_secs_f64() * 1e9 / f64::from(models::STEPS)
-    };
-    println!("\nfastest of {ROUNDS} interleaved rounds: ns a generic step, ns a step by hand, and their ratio");
-    for models::Row { name, generic, by_hand } in models::all() {
-        let mut best = [f64::INFINITY; 2];
-        for _ in 0..ROUNDS {
-            best = [best[0].min(time(&generic)), best[1].min(time(&by_hand))];
-        }
-        println!("{name:<45} {:>8.1} {:>8.1} {:>8.3}", best[0], best[1], best[0] / best[1]);
-    }
-}
-
 criterion_group!(benches, steps);
 
 fn main() {
     benches();
     ratios();
-    models();
     Criterion::default().configure_from_args().final_summary();
 }

@@ -19,8 +19,6 @@ pub(crate) enum CliError {
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
-    #[error("{0}")]
-    HardCase(#[from] hard_cases::HardCaseError),
     #[error("the scene: {0}")]
     Build(#[from] scene::BuildError),
     #[error("the scene: {0}")]
@@ -117,7 +115,7 @@ impl CliError {
             Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => 2,
             Self::Interrupted { .. } => INTERRUPTED,
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => 1,
-            Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) | Self::HardCase(_) => 1,
+            Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => 1,
         }
     }
 }

@@ -31,7 +31,8 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                     json!({"name": name, "keys": keys, "summary": summary, "properties": effect_keys::json(name)})
                 })
                 .collect(),
-            Listed::Cases => stability::cases()
+            Listed::Cases => stability::cases()?
+                .iter()
                 .map(|case| {
                     json!({"name": case.name, "hard": case.hard, "shows": case.shows, "bar": case.bar,
                            "refusable": case.refusable})
@@ -47,7 +48,9 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
             table::aligned(&METHODS.iter().map(line).collect::<Vec<_>>())
         }
         Listed::Effects => effect_keys::text(),
-        Listed::Cases => table::aligned(&stability::cases().map(|case| (case.name, case.hard)).collect::<Vec<_>>()),
+        Listed::Cases => {
+            table::aligned(&stability::cases()?.iter().map(|case| (case.name, case.hard)).collect::<Vec<_>>())
+        }
         Listed::Scenes => table::aligned(&scenes()?),
     };
     terminal::print(&text)

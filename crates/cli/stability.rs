@@ -1,20 +1,24 @@
 //! `noslip stability`: the hard cases, method by method.
 
+mod case;
+mod formulas;
+mod run;
+
 use crate::args::StabilityArguments;
 use crate::compare::{methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::{progress, table, terminal};
-use hard_cases::{CASES, HardCase};
+use case::HardCase;
 use harness::stability::{Case, Outcome, Verdict};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The cases, in words.
-pub(crate) fn cases() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().map(HardCase::case)
+pub(crate) fn cases() -> Result<Vec<Case>, CliError> {
+    Ok(case::all()?.cases.iter().map(HardCase::case).collect())
 }
 
 /// A case, a method, and what came of them.
@@ -25,8 +29,9 @@ struct CaseRow {
 }
 
 pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> {
+    let cases = case::all()?;
     let chosen: Vec<_> = match &arguments.case {
-        None => CASES.iter().collect(),
+        None => cases.cases.iter().collect(),
         Some(name) => vec![named(name)?],
     };
     let names: Vec<&str> = match &arguments.methods {
@@ -42,7 +47,7 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
     let interrupt = Interrupt::listen_saying("stopping after the cases that have begun; Ctrl-C again ends at once");
     let bar = progress::bar("cases", pairs.len() as u64);
     let rows = in_parallel(&pairs, &interrupt, |(case, method)| {
-        let verdict = case.verdict(method);
+        let verdict = case.verdict(cases, method);
         bar.inc(1);
         Ok(CaseRow { case: case.case().name, method: method.info().name, verdict: verdict? })
     })?;
@@ -94,10 +99,12 @@ fn in_parallel<T: Sync, R: Send>(
 
 fn named(name: &str) -> Result<&'static HardCase, CliError> {
     let wanted = name.trim().replace('_', "-");
-    CASES.iter().find(|case| case.case().name == wanted).ok_or_else(|| CliError::Case {
+    let names: Vec<_> = cases()?.iter().map(|case| case.name).collect();
+    let found = case::all()?.cases.iter().find(|case| case.case().name == wanted);
+    found.ok_or_else(|| CliError::Case {
         name: name.to_owned(),
-        nearest: scene::nearest(name, cases().map(|case| case.name)).map(str::to_owned),
-        names: cases().map(|case| case.name).collect::<Vec<_>>().join(", "),
+        nearest: scene::nearest(name, names.iter().copied()).map(str::to_owned),
+        names: names.join(", "),
     })
 }
 

@@ -16,7 +16,7 @@ use serde_json::Value;
 use std::fs;
 use table::Table;
 
-const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/hard-cases/expected.txt");
+const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cli/stability/expected.txt");
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/stability.md");
 
 fn text(row: &Value, key: &str) -> String {

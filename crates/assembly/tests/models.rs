@@ -4,8 +4,8 @@ use approx::assert_abs_diff_eq;
 use assembly::parts::{Blade, Body, Hinge, RotorElement, SteeredBlade, Trailer, Train};
 use assembly::{Assembly, AssemblyMethod, AssemblyState, Joint, Solver, SparseComposition, SparseDla};
 use lagrangian::{Constraint, Piecewise, Scalar, System};
-use models::{Model, RollerRacer, Snakeboard};
 use sleigh::{Sleigh, SleighState};
+use test_systems::{Model, RollerRacer, Snakeboard};
 
 const STEP: f64 = 0.05;
 const STEPS: u32 = 40;
@@ -37,7 +37,7 @@ fn static_end<Sys: System<N, M>, const N: usize, const M: usize>(
 #[test]
 fn roller_racer() {
     let (m, i1, i2, d1, d2) = (1.0, 0.5, 0.2, 0.7, 0.4);
-    let small = RollerRacer::new(m, i1, i2, d1, d2).unwrap();
+    let small = RollerRacer { m: m, I1: i1, I2: i2, d1: d1, d2: d2 };
     let (q, v) = small.start();
     let expected = static_end(&small, (q, v));
 
@@ -83,7 +83,7 @@ impl Joint<3, 1> for Opposite {
 #[test]
 fn snakeboard() {
     let (m, l, j, j_r, j_w) = (1.2, 0.5, 0.1, 0.05, 0.02);
-    let small = Snakeboard::new(m, l, j, j_r, j_w).unwrap();
+    let small = Snakeboard { m: m, l: l, J: j, Jr: j_r, Jw: j_w };
     let (q, v) = small.start();
     let expected = static_end(&small, (q, v));
 

@@ -34,9 +34,6 @@ pub enum Hint {
     },
     /// A function has a corner or a pole where the motion comes to: write it with functions that have a derivative there.
     Corner,
-    /// Use coordinates that do not end there, as the unit quaternion of [`Attitude`](lagrangian::Attitude) for angles, or others of
-    /// the same kind that are turned away from the motion.
-    OtherCoordinates,
     /// A number is too large, infinite or undefined: look at the start and the parameters, then at the step.
     Numbers,
 }
@@ -63,9 +60,6 @@ impl fmt::Display for Hint {
             Self::Corner => f.write_str(
                 "write the function so that it has a derivative there: the root of a sum of squares (in Rust `Scalar::length`), `abs`, \
                  `min`, `max`, a power of at least 1 (of at least 2 in the Lagrangian)",
-            ),
-            Self::OtherCoordinates => f.write_str(
-                "use coordinates without a singularity, a unit quaternion for an attitude, or turn the coordinates away from the motion",
             ),
             Self::Numbers => f.write_str(
                 "a number is too large or undefined: look at the start and the parameters, then at the step",
@@ -194,9 +188,6 @@ impl StepError {
             Self::Unsupported { .. } | Self::LightMass { .. } | Self::Reduced(ReducedError::NoBasis) => {
                 Hint::OtherMethod
             }
-            // Far from the end a shorter step changes less.
-            Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
-            Self::Chart { .. } => Hint::OtherCoordinates,
             Self::TooLarge { .. } => Hint::LessStack,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {

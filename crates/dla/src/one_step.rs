@@ -316,23 +316,6 @@ pub enum StepError {
         /// What the next one would be (s).
         step: f64,
     },
-    /// The coordinates of the system come near to where they end, as [`InChart`](crate::InChart) is told.
-    #[error(
-        "the coordinates come near their singularity \
-            ({chart}): their regularity is {regularity:.1e}, and must stay above {least} and \
-         above its change in the step, {change:.1e}; use coordinates without a singularity, a unit quaternion for an attitude, or turn \
-         the coordinates away from the motion"
-    )]
-    Chart {
-        /// Which coordinates, and where they end.
-        chart: &'static str,
-        /// How far from the end they are: one far from it, zero there.
-        regularity: f64,
-        /// The least that is accepted.
-        least: f64,
-        /// By how much it changes in the step, which is to be less than the regularity itself.
-        change: f64,
-    },
     /// A coordinate or a velocity became infinite or not a number.
     #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,

@@ -7,7 +7,6 @@
 //! This crate knows no integrator and no particular system.
 
 mod along;
-mod attitude;
 mod basis;
 mod bordered;
 mod bracket;
@@ -58,7 +57,6 @@ mod with;
 mod with_basis;
 
 pub use along::acceleration_along;
-pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};

@@ -6,7 +6,6 @@
 //! |---|---|
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
-//! | give a body an attitude that ends nowhere; refuse steps near where other coordinates end | [`Attitude`], [`InChart`] |
 //! | add what acts on a body; derive a basis of the admissible velocities | [`Effect`], [`With`]; [`WithBasis`] |
 //! | ask what its constraints let it reach | [`lagrangian::growth`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
@@ -34,12 +33,12 @@ pub use npz::write_npz;
 pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, DiscreteLagrangian, Dla, Equations, Event, Form, Hermite,
-    Hint, History, InChart, Mechanics, Mechanism, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
+    Hint, History, Mechanics, Mechanism, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
     Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Subject, Trajectory, View,
     Watch, consistent_start, slip,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Attitude, Constraint, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion,
+    self, AdmissibleBasis, Alpha, Constraint, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion,
     MotionError, Parametrised, Reduced, Rule, Scalar, ScalarFunction, System, Trapezoid, With, WithBasis, classify,
     constraint_residual, energy, mass_matrix, momentum, vectorized,
 };

@@ -3,8 +3,8 @@
 use dla::{Schedule, State, drive};
 use harness::{METHODS, Method};
 use lagrangian::{Piecewise, Reduced, System, quasi_velocities, reduced_acceleration};
-use models::{ChaplyginBall, Model, RollerRacer, RollingDisk, Snakeboard};
 use sleigh::{Sleigh, SleighState};
+use test_systems::{ChaplyginBall, Model};
 
 noslip::system! {
     /// The Chaplygin sleigh.
@@ -15,39 +15,6 @@ noslip::system! {
     lagrangian = "m/2*(x'^2 + y'^2) + m*a*theta'*across + (I + m*a^2)/2*theta'^2"
     constraints = ["across"]
     outputs = { speed = "x'*cos(theta) + y'*sin(theta)" }
-}
-
-noslip::system! {
-    struct Disk;
-    coordinates = { x = "m", y = "m", phi = "angle", theta = "angle" }
-    parameters = { m = 1.3, R = 0.5, I = 0.2, J = 0.1 }
-    lagrangian = "m/2*(x'^2 + y'^2) + I/2*phi'^2 + J/2*theta'^2"
-    constraints = ["x' - R*phi'*cos(theta)", "y' - R*phi'*sin(theta)"]
-}
-
-noslip::system! {
-    struct Racer;
-    coordinates = { x = "m", y = "m", theta = "angle", phi = "angle" }
-    parameters = { m = 1.0, I1 = 0.4, I2 = 0.1, d1 = 0.5, d2 = 0.3 }
-    lagrangian = "m/2*(x'^2 + y'^2) + I1/2*theta'^2 + I2/2*(theta' + phi')^2"
-    constraints = [
-        "y'*cos(theta) - x'*sin(theta)",
-        "y'*cos(theta + phi) - x'*sin(theta + phi) + (d1*cos(phi) + d2)*theta' + d2*phi'",
-    ]
-}
-
-noslip::system! {
-    struct Board;
-    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
-    parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013 }
-    let = { c = "cos(theta)", s = "sin(theta)" }
-    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2 + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
-    constraints = ["y'*c - x'*s", "sin(phi)*(x'*c + y'*s) + l*cos(phi)*theta'"]
-    basis = [
-        ["l*cos(phi)*c", "l*cos(phi)*s", "-sin(phi)", "0", "0"],
-        ["0", "0", "0", "1", "0"],
-        ["0", "0", "0", "0", "1"],
-    ]
 }
 
 noslip::system! {
@@ -159,8 +126,6 @@ where
     }
 }
 
-const MOST: [&str; 7] = ["dla", "dla8", "lobatto4", "gauss4", "gauss16", "energy4", "rk4-reduced"];
-
 fn sleigh(steps: u64) {
     let (blade, sleigh) = (Blade { m: 1.3, I: 0.7, a: 0.4 }, Sleigh::new(1.3, 0.7, 0.4).unwrap());
     let start = SleighState { speed: -1.0, turn_rate: 0.3, heading: 0.4, ..SleighState::default() }.to_coordinates();
@@ -184,64 +149,8 @@ fn the_sleigh_at_length() {
     sleigh(10_000);
 }
 
-fn rolling_disk(steps: u64) {
-    let (disk, model) = (Disk { R: 0.6, ..Disk::default() }, RollingDisk::new(1.3, 0.6, 0.2, 0.1).unwrap());
-    same_equations(&disk, &model, &[model.start()]);
-    close(&disk, &model, &MOST, model.start(), (0.01, steps));
-}
-
-#[test]
-fn the_rolling_disk() {
-    rolling_disk(20);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_rolling_disk_at_length() {
-    rolling_disk(10_000);
-}
-
-fn roller_racer(steps: u64) {
-    let (racer, model) = (Racer::default(), RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap());
-    same_equations(&racer, &model, &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0], [0.5, -0.4, 0.0, 0.0])]);
-    close(&racer, &model, &MOST, model.start(), (0.002, steps));
-}
-
-#[test]
-fn the_roller_racer() {
-    roller_racer(20);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_roller_racer_at_length() {
-    roller_racer(10_000);
-}
-
-fn snakeboard(steps: u64) {
-    let (board, model) = (Board::default(), Snakeboard::new(6.0, 0.2, 0.016, 0.072, 0.0013).unwrap());
-    same_equations(
-        &board,
-        &model,
-        &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0, 1.2], [0.5, -0.4, 0.3, 0.0, 0.0])],
-    );
-    assert_eq!(board.reduced().reconstruction(), Some(2));
-    close(&board, &model, &MOST, model.start(), (0.01, steps));
-}
-
-#[test]
-fn the_snakeboard() {
-    snakeboard(10);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_snakeboard_at_length() {
-    snakeboard(10_000);
-}
-
 fn ball(steps: u64) {
-    let (ball, model) = (Ball::default(), ChaplyginBall::new(1.2, 0.8, [0.4, 0.6, 0.9]).unwrap());
+    let (ball, model) = (Ball::default(), ChaplyginBall::new(1.2, 0.8, [0.4, 0.6, 0.9]));
     same_equations(&ball, &model, &[model.start()]);
     close(&ball, &model, &["dla", "gauss4", "gauss16", "rk4-reduced"], model.start(), (0.002, steps));
 }

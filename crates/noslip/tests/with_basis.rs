@@ -113,8 +113,8 @@ fn a_basis_that_stays_is_lost() {
 }
 
 fn roller_racer(run: (f64, u64)) {
-    let racer = models::RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
-    let (q, v) = models::Model::start(&racer);
+    let racer = test_systems::RollerRacer { m: 1.0, I1: 0.4, I2: 0.1, d1: 0.5, d2: 0.3 };
+    let (q, v) = test_systems::Model::start(&racer);
     check("roller racer", racer, (q, v), run, false);
 }
 
@@ -130,8 +130,8 @@ fn the_roller_racer_turns_in_full() {
 }
 
 fn rolling_disk(run: (f64, u64)) {
-    let disk = models::RollingDisk::new(1.0, 0.5, 0.125, 0.0625).unwrap();
-    let (q, v) = models::Model::start(&disk);
+    let disk = test_systems::RollingDisk { m: 1.0, R: 0.5, I: 0.125, J: 0.0625 };
+    let (q, v) = test_systems::Model::start(&disk);
     check("rolling disk", disk, (q, v), run, false);
 }
 

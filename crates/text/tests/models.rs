@@ -3,8 +3,8 @@
 use dla::{Mechanics, Schedule, State, drive};
 use harness::Method;
 use lagrangian::{Reduced, System};
-use models::{ChaplyginBall, KnifeEdge, Model, RollerRacer, RollingDisk, Snakeboard};
 use std::sync::Arc;
+use test_systems::{ChaplyginBall, KnifeEdge, Model, RollerRacer, RollingDisk, Snakeboard};
 use text::{TextSystem, Unit, Words};
 
 /// Coordinates in metres or angles (a name that ends in `!`), parameters, Lagrangian, constraints.
@@ -110,11 +110,11 @@ const BASED: [&str; 8] = ["dla", "dla4", "lobatto3", "rk4", "dop853", "gauss8", 
 /// The basis of the disk is the derived one up to a factor; that of the racer is another.
 #[test]
 fn small_systems_move_as_those_of_the_library() {
-    let disk_there = RollingDisk::new(1.3, 0.5, 0.2, 0.1).unwrap();
+    let disk_there = RollingDisk { m: 1.3, R: 0.5, I: 0.2, J: 0.1 };
     same::<_, 4, 2, 4, 2>(&disk(), &disk_there, disk_there.start(), (&FAMILY, 300), 1e-13);
-    let racer_there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
+    let racer_there = RollerRacer { m: 1.0, I1: 0.4, I2: 0.1, d1: 0.5, d2: 0.3 };
     same::<_, 4, 2, 4, 2>(&racer(), &racer_there, racer_there.start(), (&FAMILY, 300), 1e-12);
-    let edge_there = KnifeEdge::new(1.5, 0.7, 2.0).unwrap();
+    let edge_there = KnifeEdge { m: 1.5, I: 0.7, g: 2.0 };
     same::<_, 3, 1, 3, 1>(&edge(), &edge_there, edge_there.start(), (&FAMILY, 300), 1e-12);
 }
 
@@ -134,7 +134,7 @@ fn in_the_basis_of_the_library(steps: u64) {
     let mut words = racer();
     let vectors = [["cos(theta)", "sin(theta)", "0", "sin(phi)/d2"], ["0", "0", "1", "-d1/d2*cos(phi) - 1"]];
     words.basis = vectors.map(|vector| vector.map(str::to_owned).to_vec()).to_vec();
-    let there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
+    let there = RollerRacer { m: 1.0, I1: 0.4, I2: 0.1, d1: 0.5, d2: 0.3 };
     same::<_, 4, 2, 4, 2>(&words, &there, there.start(), (&BASED, steps), 1e-12);
 }
 
@@ -151,7 +151,7 @@ fn a_shape_that_is_filled_up_shows_nothing_of_it_in_full() {
 
 /// Five coordinates and two constraints in the shape of six and three, and of twelve and six.
 fn filled_up(steps: u64) {
-    let there = Snakeboard::new(6.0, 0.2, 0.016, 0.072, 0.0013).unwrap();
+    let there = Snakeboard { m: 6.0, l: 0.2, J: 0.016, Jr: 0.072, Jw: 0.0013 };
     same::<_, 5, 2, 6, 3>(&board(), &there, there.start(), (&["dla", "rk4", "lobatto3"], steps), 1e-12);
     same::<_, 5, 2, 12, 6>(&board(), &there, there.start(), (&["dla"], steps), 1e-12);
 }
@@ -174,7 +174,7 @@ fn constraints_on_positions_are_kept() {
     .map(|(name, text)| (name.to_owned(), text.to_owned()))
     .to_vec();
     words.positions = vec!["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2".to_owned()];
-    let there = ChaplyginBall::new(1.0, 0.7, [0.4, 0.6, 0.9]).unwrap();
+    let there = ChaplyginBall::new(1.0, 0.7, [0.4, 0.6, 0.9]);
     same::<_, 6, 3, 6, 3>(&words, &there, there.start(), (&["dla", "lobatto3"], 300), 1e-11);
 }
 
@@ -194,7 +194,7 @@ fn a_derived_basis_changes_and_the_method_keeps_its_claims_at_length() {
 /// by several rounds, and each elimination is bad at two headings of every round. In steps of the length `h` and half of it.
 fn keeps_its_claims(duration: f64, h: f64, methods: &[(&str, f64)]) {
     let steps = (duration / h).round() as u64;
-    let there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
+    let there = RollerRacer { m: 1.0, I1: 0.4, I2: 0.1, d1: 0.5, d2: 0.3 };
     let (q, v) = there.admissible([0.0, 0.0, 0.0, 2.0], [0.3, 2.0, 0.0, 0.0]);
     // Of a row that is scaled by a function no basis is seen that holds everywhere.
     let mut words = racer();

@@ -4,14 +4,33 @@ use crate::curves::Upright::Linear;
 use crate::curves::{curve, in_time, level, markers, upper_edge};
 use crate::program::Program;
 use dla::{Dla, Energy, Node, OneStep, Schedule, State, Trajectory, drive};
-use hard_cases::TwoRows;
 use harness::Rk4Reduced;
 use harness::report::Chart;
 use lagrangian::System;
-use models::{CompoundPendulum, ContactOscillator, GaugedOscillator};
 use sleigh::{Exact, Sleigh, SleighState};
 use std::error::Error;
 use std::f64::consts::PI;
+use test_systems::{CompoundPendulum, ContactOscillator};
+
+noslip::system! {
+    /// Two blades side by side, parallel: the second says what the first does.
+    struct ParallelBlades;
+    coordinates = { x = "m", y = "m", theta = "angle" }
+    parameters = { m = 1.0, I = 1.0, a = 0.5 }
+    let = { across = "y'*cos(theta) - x'*sin(theta)" }
+    lagrangian = "m/2*(x'^2 + y'^2) + m*a*theta'*across + (I + m*a^2)/2*theta'^2"
+    constraints = ["across", "across"]
+}
+
+noslip::system! {
+    /// A blade, and a guide that lets go at `x = 1 m`.
+    struct BladeAndGuide;
+    coordinates = { x = "m", y = "m", theta = "angle" }
+    parameters = { m = 1.0, I = 1.0, a = 0.5 }
+    let = { across = "y'*cos(theta) - x'*sin(theta)" }
+    lagrangian = "m/2*(x'^2 + y'^2) + m*a*theta'*across + (I + m*a^2)/2*theta'^2"
+    constraints = ["across", "(x - 1)*theta'"]
+}
 
 type Drawn = Result<Chart, Box<dyn Error>>;
 
@@ -41,7 +60,7 @@ pub(crate) fn parallel_blades(_program: &Program) -> Drawn {
     let gudermann = |s: f64| 2.0 * (0.5 * s).tanh().atan();
     let turned = |t: f64| (gudermann(begin + 2.0 * gain * speed * t) - gudermann(begin)) / (2.0 * a * gain).sqrt();
     let times = |count: u32| (0..=count).map(move |k| 20.0 * f64::from(k) / f64::from(count));
-    let dla = nodes(&TwoRows::Parallel(sleigh), Dla::midpoint(), start.to_coordinates(), (0.05, 400));
+    let dla = nodes(&ParallelBlades::default(), Dla::midpoint(), start.to_coordinates(), (0.05, 400));
     let layers = vec![
         curve("dla, two blades", dla.iter().map(|node| [node.t, node.q[2]]).collect()),
         curve("the force counted twice", times(200).map(|t| [t, turned(t)]).collect()),
@@ -51,8 +70,7 @@ pub(crate) fn parallel_blades(_program: &Program) -> Drawn {
 }
 
 pub(crate) fn dropping_row(_program: &Program) -> Drawn {
-    let guide = TwoRows::Guide(Sleigh::new(1.0, 1.0, 0.5)?);
-    let run = nodes(&guide, Dla::midpoint(), ([0.0; 3], [1.0, 0.0, 0.0]), (0.0625, 32));
+    let run = nodes(&BladeAndGuide::default(), Dla::midpoint(), ([0.0; 3], [1.0, 0.0, 0.0]), (0.0625, 32));
     let way: Vec<[f64; 2]> = run.iter().map(|node| [node.t, node.q[0]]).collect();
     let end = way[way.len() - 1];
     let layers = vec![
@@ -65,25 +83,24 @@ pub(crate) fn dropping_row(_program: &Program) -> Drawn {
 }
 
 pub(crate) fn pseudo_holonomic(_program: &Program) -> Drawn {
-    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81)?.pseudo_holonomic();
+    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).pseudo_holonomic();
     let (start, steps) = (pendulum.state_at(1.2, 0.3), (0.1, 20_000));
-    let system = TwoRows::Pendulum(pendulum);
     let off = |nodes: Vec<Node<3, 2>>| {
         let hinge = |node: &Node<3, 2>| pendulum.hinge(&node.q);
         upper_edge(nodes.iter().map(|node| [node.t, hinge(node)[0].hypot(hinge(node)[1])]))
     };
     let layers = vec![
-        curve("dla", off(nodes(&system, Dla::midpoint(), start, steps))),
-        curve("rk4-reduced", off(nodes(&system, Rk4Reduced, start, steps))),
+        curve("dla", off(nodes(&pendulum, Dla::midpoint(), start, steps))),
+        curve("rk4-reduced", off(nodes(&pendulum, Rk4Reduced, start, steps))),
     ];
     Ok(in_time("A hinge that is given by its rates alone", "distance of the hinge [m]", Linear, layers))
 }
 
 pub(crate) fn gauge(_program: &Program) -> Drawn {
-    let plain = ContactOscillator::new(0.0)?;
-    let start = plain.start_at(-0.5 * 2f64.sqrt())?;
+    let without = ContactOscillator::default();
+    let start = without.start_at(-0.5 * 2f64.sqrt());
     let steps = (2.0 * (PI / 40.0).sin(), 100_000);
-    let (with, without) = (GaugedOscillator::new(plain, 1.0)?, GaugedOscillator::new(plain, 0.0)?);
+    let with = ContactOscillator { s: 1.0, ..without };
     // The mean over fifty periods of `y`, so that what drifts is seen without what swings.
     let drift = |label: &str, nodes: Vec<Node<3, 1>>| {
         let mean = |part: &[Node<3, 1>]| part.iter().map(|node| node.energy - nodes[0].energy).sum::<f64>() / 2000.0;

@@ -2,8 +2,6 @@
 
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
-pub const CHART: &str = "Tait-Bryan angles, which end where cos(beta) = 0";
-
 /// `q = (x, y, alpha, beta, gamma)`, with the mass, the radius and the principal moments of inertia.
 #[derive(Debug, Clone, Copy)]
 pub struct AngleBall {
@@ -13,11 +11,6 @@ pub struct AngleBall {
 }
 
 impl AngleBall {
-    /// `cos(beta)`.
-    pub fn regularity(&self, q: &[f64; 5]) -> f64 {
-        q[3].cos().abs()
-    }
-
     /// At the origin with the angles zero, rolling at the angular velocity `omega` (rad/s).
     pub fn level(&self, omega: [f64; 3]) -> ([f64; 5], [f64; 5]) {
         let r = self.radius;

@@ -7,7 +7,8 @@
 use crate::attitudes::tools::{Place, assert_halving, assert_order, largest};
 use crate::support::Six;
 use dla::{Composition, Dla, Lobatto, OneStep, View};
-use lagrangian::{AdmissibleBasis, Attitude, Constraint, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use test_systems::Attitude;
 
 const PATH: f64 = 0.3;
 const RADIUS: f64 = 0.05;

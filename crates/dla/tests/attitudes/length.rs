@@ -5,10 +5,10 @@ use crate::large::with_stack;
 use crate::support::{Four, Six};
 use dla::{Composition, Dla, Energy, Form, Gauss, Gni, Lobatto, OneStep, State, StepError, View};
 use lagrangian::{System, Trapezoid};
-use models::{Attitude, ChaplyginBall, Model, Suslov};
+use test_systems::{Attitude, ChaplyginBall, Model, Suslov};
 
 fn ball() -> ChaplyginBall {
-    ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap()
+    ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1])
 }
 
 /// The largest `||e|^2 - 1|/2` over so many steps of 0.05 s.
@@ -41,7 +41,7 @@ fn on_positions(steps: u64) {
     held("lobatto3", off(&ball, Lobatto::<3>::new(), steps / 10));
     held("gauss4", off(&ball, Gauss::new::<2>(), steps / 10));
     held("gauss8", off(&ball, Gauss::new::<4>(), steps / 10));
-    let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
+    let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5);
     let suslov = (Four::from(suslov), suslov.start());
     held("Suslov, dla", off(&suslov, Dla::midpoint(), steps));
     held("Suslov, gauss8", off(&suslov, Gauss::new::<4>(), steps / 10));

@@ -1,7 +1,6 @@
-//! Attitudes of bodies that turn in space: by unit quaternions at any attitude, and by angles up to where they end.
+//! Attitudes of bodies that turn in space: by unit quaternions at any attitude, and by angles beside them.
 
 pub(crate) mod angles;
-mod chart;
 pub(crate) mod cylinder;
 mod length;
 mod rolling;

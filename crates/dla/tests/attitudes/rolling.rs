@@ -6,8 +6,8 @@ use crate::attitudes::tools::{Place, assert_halving, assert_order, largest};
 use crate::support::{Five, Six};
 use dla::{Composition, Dla, Energy, Gauss, Lobatto, OneStep, RunError, View};
 use lagrangian::System;
-use models::{Attitude, ChaplyginBall};
 use proptest::prelude::*;
+use test_systems::{Attitude, ChaplyginBall};
 
 const MOMENT: f64 = 0.4;
 
@@ -54,7 +54,7 @@ fn by_quaternions<Method: OneStep<6, 3>>(
 }
 
 fn ball() -> ChaplyginBall {
-    ChaplyginBall::new(1.0, 1.0, [MOMENT; 3]).unwrap()
+    ChaplyginBall::new(1.0, 1.0, [MOMENT; 3])
 }
 
 /// At most ten metres, each step with a rounding of the place and the velocities, all in one direction at worst.
@@ -138,8 +138,7 @@ fn by_angles_it_does_not() {
 #[test]
 fn both_charts_are_one_motion() {
     let (inertia, omega) = ([0.3, 0.4, 0.55], [0.3, 0.2, -0.4]);
-    let (ours, theirs) =
-        (ChaplyginBall::new(1.2, 0.7, inertia).unwrap(), AngleBall { mass: 1.2, radius: 0.7, inertia });
+    let (ours, theirs) = (ChaplyginBall::new(1.2, 0.7, inertia), AngleBall { mass: 1.2, radius: 0.7, inertia });
     let steps = (0.01, 300);
     let (_, by_quaternions) = largest(
         &Six::from(ours),
@@ -170,7 +169,7 @@ fn rolls_from(e: [f64; 4], omega: [f64; 3], time: f64) {
     to_rounding("dla", by_quaternions(ball(), Dla::midpoint(), &from, roll), roll);
     to_rounding("lobatto3", by_quaternions(ball(), Lobatto::<3>::new(), &from, roll), roll);
     // Space turned about the vertical turns the path of any ball: no direction of it is singled out.
-    let ball = ChaplyginBall::new(1.2, 0.7, [0.3, 0.4, 0.55]).unwrap();
+    let ball = ChaplyginBall::new(1.2, 0.7, [0.3, 0.4, 0.55]);
     let steps = (10.0 * time).round() as u64;
     let run =
         |start: Place<6>| largest(&Six::from(ball), &mut Dla::midpoint(), start, (0.05, steps), |_| [0.0]).1.unwrap();

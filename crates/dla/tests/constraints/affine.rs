@@ -3,10 +3,10 @@
 use crate::constraints::tools::{Largest, assert_order, end, misses};
 use crate::support::Six;
 use dla::{Composition, Dla, Gauss, Lobatto, OneStep, Schedule, State, View, drive};
-use models::{Model, TurntableBall};
+use test_systems::{Model, TurntableBall};
 
 fn ball() -> TurntableBall {
-    TurntableBall::new(1.3, 0.6, 0.4 * 1.3 * 0.36, 1.7).unwrap()
+    TurntableBall::new(1.3, 0.6, 0.4 * 1.3 * 0.36, 1.7)
 }
 
 /// Errors of the centre's place and velocity at the time 2, against its circle.

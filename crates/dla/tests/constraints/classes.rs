@@ -2,7 +2,7 @@
 
 use crate::support::Two;
 use lagrangian::{Classification, Constraint, RowKind, Rows, Scalar, System, classify};
-use models::{CompoundPendulum, IsokineticParticle, KnifeEdge, Model, RollingDisk, SleighOnArm, TurntableBall};
+use test_systems::{CompoundPendulum, IsokineticParticle, KnifeEdge, Model, RollingDisk, SleighOnArm, TurntableBall};
 
 fn at_start<Mo: Model<N, M>, const N: usize, const M: usize>(model: &Mo) -> Classification<M> {
     let (q, v) = model.start();
@@ -11,29 +11,29 @@ fn at_start<Mo: Model<N, M>, const N: usize, const M: usize>(model: &Mo) -> Clas
 
 #[test]
 fn classes_of_the_models() {
-    let edge = at_start(&KnifeEdge::new(1.0, 0.5, 1.0).unwrap());
+    let edge = at_start(&KnifeEdge { m: 1.0, I: 0.5, g: 1.0 });
     assert_eq!((edge.kinds, edge.rank, edge.brackets), ([RowKind::Linear], 1, 1));
     assert!(!edge.integrable() && edge.regular && edge.consistent && edge.dependence.involved.is_empty());
     // Two admissible fields have one bracket.
-    let disk = at_start(&RollingDisk::new(1.0, 1.0, 1.0, 1.0).unwrap());
+    let disk = at_start(&RollingDisk { m: 1.0, R: 1.0, I: 1.0, J: 1.0 });
     assert_eq!((disk.rank, disk.brackets), (2, 1));
 
-    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).unwrap();
+    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81);
     assert_eq!(at_start(&pendulum).kinds, [RowKind::Position; 2]);
     let pseudo = at_start(&pendulum.pseudo_holonomic());
     assert_eq!(pseudo.kinds, [RowKind::Linear; 2]);
     assert!(pseudo.integrable());
 
     // One admissible field has no bracket: with the arm the blade is integrable, as the planimeter's path shows.
-    let sleigh = at_start(&SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap());
+    let sleigh = at_start(&SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0));
     assert_eq!(sleigh.kinds, [RowKind::Linear, RowKind::Position]);
     assert!(sleigh.integrable());
 
-    let ball = at_start(&TurntableBall::new(1.3, 0.6, 0.2, 1.7).unwrap());
+    let ball = at_start(&TurntableBall::new(1.3, 0.6, 0.2, 1.7));
     assert_eq!(ball.kinds, [RowKind::Affine, RowKind::Affine, RowKind::Position]);
     assert_eq!((ball.rank, ball.brackets), (3, 2));
 
-    let particle = at_start(&IsokineticParticle::new(1.3, 0.8, 1.0).unwrap());
+    let particle = at_start(&IsokineticParticle::new(1.3, 0.8, 1.0));
     assert_eq!((particle.kinds, particle.rank), ([RowKind::Nonlinear], 1));
     assert!(!particle.integrable());
 }

@@ -5,14 +5,14 @@ use crate::large::with_stack;
 use crate::support::{ThreeTwo, Two};
 use dla::{Composition, Dla, Energy, Form, Gauss, Gni, Lobatto, OneStep, State, StepError};
 use lagrangian::{Constraint, Scalar, System};
-use models::{CompoundPendulum, Model, SleighOnArm};
+use test_systems::{CompoundPendulum, Model, SleighOnArm};
 
 fn sleigh() -> SleighOnArm {
-    SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap()
+    SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0)
 }
 
 fn pendulum() -> CompoundPendulum {
-    CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).unwrap()
+    CompoundPendulum::new(1.3, 0.4, 0.9, 9.81)
 }
 
 /// Both to 1e-13 over any number of steps; the pendulum whose hinge is given by its velocity alone shows that the positions are held.

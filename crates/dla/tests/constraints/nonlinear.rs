@@ -3,10 +3,10 @@
 use crate::constraints::tools::{assert_order, distance, end, misses};
 use crate::support::Two;
 use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OneStep, State, StepError};
-use models::{IsokineticParticle, Model};
+use test_systems::{IsokineticParticle, Model};
 
 fn particle() -> IsokineticParticle {
-    IsokineticParticle::new(1.3, 0.8, -0.9).unwrap()
+    IsokineticParticle::new(1.3, 0.8, -0.9)
 }
 
 fn errors<Method: OneStep<2, 1> + Clone>(method: &Method) -> [f64; 4] {

@@ -4,11 +4,11 @@
 use crate::constraints::tools::{Largest, assert_order};
 use crate::support::ThreeTwo;
 use dla::{Dla, Schedule, State, View, drive};
-use models::{CompoundPendulum, Model};
+use test_systems::{CompoundPendulum, Model};
 
 /// The largest distance of the hinge from the origin (m).
 fn drift(step: f64, steps: u64) -> f64 {
-    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).unwrap().pseudo_holonomic();
+    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).pseudo_holonomic();
     let (q, v) = pendulum.start();
     let mut off = Largest::of(|node: &View<'_, 3, 2>| {
         let [x, y] = pendulum.hinge(node.state.q());

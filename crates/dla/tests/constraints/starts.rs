@@ -3,13 +3,13 @@
 use crate::support::{One, Six, ThreeTwo, Two};
 use dla::{StepError, consistent_start};
 use lagrangian::{Constraint, Scalar, System, constraint_residual, position_residual, row_space};
-use models::{IsokineticParticle, Model, SleighOnArm, TurntableBall};
+use test_systems::{IsokineticParticle, Model, SleighOnArm, TurntableBall};
 
 /// A start off the constraints by tenths is moved to the nearest place: the way there, in the kinetic metric, is along the
 /// gradients at its end.
 #[test]
 fn the_nearest_start() {
-    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
+    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0);
     let (mut q, mut v) = sleigh.start();
     let here = consistent_start(&ThreeTwo::from(sleigh), 0.0, &q, &v).unwrap();
     assert!(here.moved <= 1e-15 && here.changed <= 1e-14, "{here:?}");
@@ -76,12 +76,12 @@ fn the_nearest_place_of_a_circle() {
 /// An affine one, and one that is not: the velocity is scaled to the speed.
 #[test]
 fn starts_of_other_classes() {
-    let ball = TurntableBall::new(1.3, 0.6, 0.2, 1.7).unwrap();
+    let ball = TurntableBall::new(1.3, 0.6, 0.2, 1.7);
     let start = consistent_start(&Six::from(ball), 0.0, &[0.4, 0.1, 1.0, 0.5, 0.0, 0.2], &[0.3; 6]).unwrap();
     assert!(position_residual(&ball, 0.0, &start.q) <= 1e-15);
     assert!(constraint_residual(&ball, 0.0, &start.q, &start.v).iter().all(|slip| slip.abs() <= 1e-15));
 
-    let particle = IsokineticParticle::new(1.3, 0.8, 1.0).unwrap();
+    let particle = IsokineticParticle::new(1.3, 0.8, 1.0);
     let start = consistent_start(&Two::from(particle), 0.0, &[0.0; 2], &[0.9, 1.2]).unwrap();
     approx::assert_abs_diff_eq!(&start.v[..], &[0.48, 0.64][..], epsilon = 1e-15);
     assert_eq!(start.moved, 0.0);

@@ -95,19 +95,6 @@ fn of_everything_else() {
         (StepError::Tolerance { tries: 5, step: 1e-9 }, HALF),
         (StepError::Unsupported { reason: "it cannot" }, Some(Hint::OtherMethod)),
         (StepError::Reduced(ReducedError::NoBasis), Some(Hint::OtherMethod)),
-        (
-            StepError::Chart { chart: "angles", regularity: 0.02, least: 0.05, change: 0.5 },
-            Some(Hint::OtherCoordinates),
-        ),
-        (
-            StepError::Chart { chart: "angles", regularity: 0.06, least: 0.05, change: 0.5 },
-            Some(Hint::OtherCoordinates),
-        ),
-        (
-            StepError::Chart { chart: "angles", regularity: f64::NAN, least: 0.05, change: 0.5 },
-            Some(Hint::OtherCoordinates),
-        ),
-        (StepError::Chart { chart: "angles", regularity: 0.3, least: 0.05, change: 0.5 }, HALF),
         (StepError::Jump { time: 1.5 }, Some(Hint::NodeAt { time: 1.5 })),
         (StepError::Motion(motion(0.0)), Some(Hint::Constraints)),
         (StepError::Motion(motion(f64::INFINITY)), Some(Hint::Numbers)),
@@ -143,7 +130,6 @@ fn a_hint_says_it() {
         (Hint::Constraints, "constraint rows"),
         (Hint::OtherMethod, "another method"),
         (Hint::NodeAt { time: 1.5 }, "t = 1.5 s"),
-        (Hint::OtherCoordinates, "quaternion"),
         (Hint::Numbers, "undefined"),
         (Hint::Corner, "Scalar::length"),
     ] {

@@ -8,9 +8,9 @@ use dla::{
     StepEquations, StepError, StepReport, StepStart,
 };
 use lagrangian::{Gradients, Seeded, System};
-use models::{Model, SleighOnArm};
 use sleigh::Sleigh;
 use std::ops::ControlFlow;
+use test_systems::{Model, SleighOnArm};
 
 #[test]
 fn a_refusal_has_a_reason_and_changes_nothing() {
@@ -51,7 +51,7 @@ fn a_failed_step_and_numbers_that_are_none() {
 /// Which classes of constraints a composition carries, and into what it divides a step, is its base's matter.
 #[test]
 fn a_composition_is_differentiated_as_its_base() {
-    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
+    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0);
     let ((q, v), sleigh) = (sleigh.start(), ThreeTwo::from(sleigh));
     let (start, sensitivity) = (State::new(q, v, sleigh.angles()), Sensitivity::of(&sleigh));
     let mut end = start;

@@ -8,8 +8,8 @@ use dla::{
     Composition, Differentiable, Dla, Energy, Form, Gauss, Lobatto, OneStep, Sensitivity, SensitivityError, State,
 };
 use lagrangian::{Midpoint, System, Trapezoid};
-use models::{IsokineticParticle, Model, SleighOnArm, Snakeboard};
 use sleigh::{Guided, Sleigh};
+use test_systems::{IsokineticParticle, Model, SleighOnArm, Snakeboard};
 
 fn assert_close(name: &str, worst: f64) {
     println!("{name}: {worst:.1e}");
@@ -97,7 +97,7 @@ fn a_basis_that_moves() {
 /// Two constraints, five coordinates.
 #[test]
 fn the_snakeboard() {
-    let board = Snakeboard::new(1.2, 0.4, 0.05, 0.03, 0.02).unwrap();
+    let board = Snakeboard { m: 1.2, l: 0.4, J: 0.05, Jr: 0.03, Jw: 0.02 };
     let (mut q, v) = board.start();
     q[4] += 0.3;
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
@@ -108,7 +108,7 @@ fn the_snakeboard() {
 /// A constraint on positions beside the blade's; the start is off it too, where the step still has a derivative.
 #[test]
 fn a_sleigh_on_an_arm() {
-    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
+    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0);
     let (q, v) = sleigh.start();
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
     let sleigh = ThreeTwo::from(sleigh);
@@ -134,7 +134,7 @@ fn a_sleigh_on_an_arm() {
 /// A constraint that is not affine in the velocities, by Chetaev's rule.
 #[test]
 fn an_isokinetic_particle() {
-    let particle = IsokineticParticle::new(1.3, 0.8, 0.6).unwrap();
+    let particle = IsokineticParticle::new(1.3, 0.8, 0.6);
     let (q, v) = particle.state_at([0.2, -0.1], 1.1);
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
     let particle = Two::from(particle);

@@ -13,9 +13,9 @@ use crate::runs::{counter_example, events, failures, observers, scripted};
 use crate::systems::{alternating, continued, degenerate, driven, lanes, models as small};
 use crate::{corners, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
-use models::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, Slope, Torque};
 use sleigh::{CentreOfMass, Guided, Sleigh};
+use test_systems::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall};
 
 macro_rules! shape {
     ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* } $($more:tt)*) => {

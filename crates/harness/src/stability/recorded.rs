@@ -36,11 +36,6 @@ impl Recorded {
     pub fn end(&self) -> Option<&Seen> {
         if self.failure.is_some() || self.late { None } else { self.nodes.last() }
     }
-
-    /// One of the values, node by node, with the time (s).
-    pub fn series(&self, value: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.nodes.iter().map(move |node| (node.t, node.values[value]))
-    }
 }
 
 /// The observer that records a run for the checks; it ends one that is no longer finite, or that takes too long.

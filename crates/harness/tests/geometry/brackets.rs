@@ -1,7 +1,7 @@
 use approx::assert_relative_eq;
 use lagrangian::{Constraint, GrowthError, Scalar, System, growth};
-use models::{IsokineticParticle, KnifeEdge, Model, RollingDisk, Snakeboard};
 use sleigh::{CentreOfMass, Flywheel, Sleigh};
+use test_systems::{IsokineticParticle, KnifeEdge, Model, RollingDisk, Snakeboard};
 
 fn sleigh() -> Sleigh {
     Sleigh::new(1.3, 0.7, 0.4).unwrap()
@@ -32,13 +32,13 @@ fn the_sleigh_is_controllable_at_once() {
 /// (Bloch 2003, sections 1.4 and 6.2: the rolling disk is reached in three steps.)
 #[test]
 fn other_systems_grow_as_the_literature_has_it() {
-    let disk = RollingDisk::new(1.0, 0.5, 0.125, 0.0625).unwrap();
+    let disk = RollingDisk { m: 1.0, R: 0.5, I: 0.125, J: 0.0625 };
     assert_eq!(growth(&disk, 0.0, &disk.start().0).unwrap().dimensions, [2, 3, 4]);
-    let board = Snakeboard::new(1.2, 0.4, 0.05, 0.03, 0.02).unwrap();
+    let board = Snakeboard { m: 1.2, l: 0.4, J: 0.05, Jr: 0.03, Jw: 0.02 };
     let (q, _) = board.start();
     let grown = growth(&board, 0.0, &q).unwrap();
     assert!(grown.is_controllable(), "{:?}", grown.dimensions);
-    let edge = KnifeEdge::new(1.0, 0.5, 1.0).unwrap();
+    let edge = KnifeEdge { m: 1.0, I: 0.5, g: 1.0 };
     assert_eq!(growth(&edge, 0.0, &edge.start().0).unwrap().dimensions, [2, 3]);
 }
 
@@ -83,7 +83,7 @@ fn a_holonomic_system_stops_growing() {
 
 #[test]
 fn a_constraint_on_the_speed_has_no_directions() {
-    let particle = IsokineticParticle::new(1.3, 0.8, 1.0).unwrap();
+    let particle = IsokineticParticle::new(1.3, 0.8, 1.0);
     let (q, _) = particle.start();
     assert!(matches!(growth(&particle, 0.0, &q), Err(GrowthError::Nonlinear { .. })));
 }

@@ -1,10 +1,9 @@
 //! Fields, forces, constraints: what is broken is a rule for one oscillator, one force or one row.
 
+use crate::stability::checks::{agrees, constant, constraint, ends_at, energy, follows, sign_kept};
 use crate::stability::{control, energetic, recorded, schedule};
-use harness::stability::check::{
-    agrees, constant, constraint, ends_at, energy, follows, measured, rounding, truncation,
-};
-use harness::stability::{Recorded, Seen, check};
+use harness::stability::check::{measured, rounding, truncation};
+use harness::stability::{Recorded, Seen};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// An oscillator `x'' = -k x` in `values[0]`, `values[3]`, by a rule for a step.
@@ -141,7 +140,7 @@ fn a_heavy_drag() {
         nodes: run.nodes.into_iter().take_while(|node| node.values[3] != 0.0).collect(),
         ..Recorded::default()
     };
-    let sign = |factor| check::sign_kept(&alive(run(factor)), 3);
+    let sign = |factor| sign_kept(&alive(run(factor)), 3);
     control("heavy-drag", sign((-part).exp()), sign((1.0 - 0.5 * part) / (1.0 + 0.5 * part)));
 }
 

@@ -1,6 +1,7 @@
 //! Every check of the hard cases sees a stepper that is broken in the way that the case is about, and passes the same
 //! stepper unbroken.
 
+mod checks;
 mod claims;
 mod fields;
 mod places;

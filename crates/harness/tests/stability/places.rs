@@ -1,9 +1,10 @@
 //! Places, turns and masses.
 
+use crate::stability::checks::{agrees, follows};
 use crate::stability::sleigh::{BODY, Body, Broken, run};
 use crate::stability::{control, schedule};
 use harness::stability::Finding;
-use harness::stability::check::{agrees, follows, rounding, truncation};
+use harness::stability::check::{rounding, truncation};
 use std::f64::consts::TAU;
 
 #[test]

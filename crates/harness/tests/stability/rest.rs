@@ -1,7 +1,8 @@
 //! Motions that are small beside the forces on them: what is broken is what a search takes for rounding, or how it asks for a force.
 
+use crate::stability::checks::{follows, stays_below};
 use crate::stability::{control, energetic, recorded, schedule};
-use harness::stability::check::{follows, rounding, stays_below, truncation};
+use harness::stability::check::{rounding, truncation};
 use harness::stability::{Recorded, Trial};
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,9 +1,10 @@
 //! Spins, long steps and long runs.
 
+use crate::stability::checks::{constraint, ends_at, energy, follows, sign_kept, stays_below};
 use crate::stability::sleigh::{BODY, Broken, run, straight, value};
 use crate::stability::{control, energetic, recorded, schedule};
 use dla::Schedule;
-use harness::stability::check::{constraint, ends_at, energy, follows, rounding, sign_kept, stays_below, truncation};
+use harness::stability::check::{rounding, truncation};
 use harness::stability::{Recorded, Trial};
 use std::f64::consts::TAU;
 

@@ -5,8 +5,8 @@ use crate::table::case::{Case, Facts, Row};
 use crate::table::shapes::Three;
 use crate::table::tools::method;
 use dla::Schedule;
-use models::{ContactOscillator, GaugedOscillator};
 use std::f64::consts::PI;
+use test_systems::ContactOscillator;
 
 /// Forty steps in a period of `y`, as the scheme counts it.
 fn step() -> f64 {
@@ -15,9 +15,8 @@ fn step() -> f64 {
 
 /// The least-squares slope of the energy, seen once in a period of `y`.
 fn slope(gauge: f64, z0: f64, name: &str, periods: u64) -> f64 {
-    let plain = ContactOscillator::new(0.0).unwrap();
-    let system = GaugedOscillator::new(plain, gauge).unwrap().into();
-    let start = plain.start_at(z0).unwrap();
+    let oscillator = ContactOscillator { s: gauge, ..ContactOscillator::default() };
+    let (start, system) = (oscillator.start_at(z0), oscillator.into());
     let case: Row<Three, 3> = Row { name: "gauged", system, start, duration: 0.0, facts: Facts::default() };
     let (mut k, mut trend) = (0u64, harness::Trend::default());
     let schedule = Schedule { t0: 0.0, step: step(), steps: 40 * periods };
@@ -72,7 +71,7 @@ fn the_energy_methods_keep_it() {
 fn plain_symmetric_scheme(z0: f64, periods: u64) -> Vec<f64> {
     let h = step();
     let velocity = |q: &[f64; 3], p: &[f64; 3]| [p[0], p[1], p[2] - q[2].sin()];
-    let (mut q, v) = ContactOscillator::new(0.0).unwrap().start_at(z0).unwrap();
+    let (mut q, v) = ContactOscillator::default().start_at(z0);
     let mut p = [v[0], v[1], v[2] + q[2].sin()];
     let energy = |q: &[f64; 3], p: &[f64; 3]| {
         let v = velocity(q, p);

@@ -11,8 +11,8 @@ use crate::table::systems::{Field, InField, Thrust, Turntable};
 use crate::table::tools::{fitted_order, method, methods};
 use harness::{METHODS, MethodInfo};
 use lagrangian::With;
-use models::{KnifeEdge, Model};
 use sleigh::{CentreOfMass, Sleigh, SleighState};
+use test_systems::{KnifeEdge, Model};
 
 /// Motions that are entire functions of time: the blade of a balanced sleigh turns evenly, and the rest is linear in the
 /// place and the speed.
@@ -24,7 +24,7 @@ fn without_singularities() -> Vec<Row<Three, 3>> {
     let pushed = |frequency| With { body: well, effects: Thrust { force: -0.5, frequency } }.into();
     // Across the blade, y = 0 and heading 0: y' = rate x.
     let on_the_table = ([0.4, 0.0, 0.0], [0.7, 0.3 * 0.4, 1.4]);
-    let edge = KnifeEdge::new(1.3, 0.6, 1.7).unwrap();
+    let edge = KnifeEdge { m: 1.3, I: 0.6, g: 1.7 };
     let forced = Facts { forced: true, ..Facts::default() };
     vec![
         row("knife edge on an incline", edge.into(), edge.start(), Facts::default()),

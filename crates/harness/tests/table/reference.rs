@@ -4,8 +4,8 @@ use crate::table::case::{Case, Facts, Point, Row};
 use crate::table::shapes::{Four, Place, Three};
 use crate::table::systems::{Field, InField, at_centre};
 use crate::table::tools::method;
-use models::{Attitude, KnifeEdge, Model, Particle, RollingDisk, Suslov};
 use sleigh::{CentreOfMass, Sleigh};
+use test_systems::{Attitude, KnifeEdge, Model, Particle, RollingDisk, Suslov};
 
 fn row<PathShape, const N: usize>(
     name: &'static str,
@@ -84,13 +84,13 @@ fn on_the_closed_form(case: &dyn Case, (methods, steps): (&[&str], u64), publish
 }
 
 fn on_closed_forms(by: (&[&str], u64)) {
-    let disk = RollingDisk::new(1.0, 1.0, 1.0, 1.0).unwrap();
+    let disk = RollingDisk { m: 1.0, R: 1.0, I: 1.0, J: 1.0 };
     let disk: Row<Four, 4> = row("disk", disk, disk.start(), 1.0);
     on_the_closed_form(&disk, by, Some([2.96e-3, 7.4e-4, 1.8e-4]), 10);
-    let particle = Particle::flat(1.0).unwrap();
+    let particle = Particle { m: 1.0, k: 0.0 };
     let particle: Row<Three, 3> = row("particle", particle, particle.start(), 3.0);
     on_the_closed_form(&particle, by, Some([2.04e-3, 5.10e-4, 1.27e-4]), 20);
-    let edge = KnifeEdge::new(1.0, 1.0, 0.7).unwrap();
+    let edge = KnifeEdge { m: 1.0, I: 1.0, g: 0.7 };
     let edge: Row<Three, 3> =
         row("knife edge", edge, ([0.1, 0.2, 0.3], [0.4 * 0.3f64.cos(), 0.4 * 0.3f64.sin(), 0.8]), 5.0);
     on_the_closed_form(&edge, by, None, 0);
@@ -109,7 +109,7 @@ fn closed_forms_in_full() {
 
 /// The angular velocity of the Suslov problem is known in closed form, its attitude is not.
 fn suslov_by(methods: &[&str], steps: u64) {
-    let body = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
+    let body = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5);
     let angular_velocity = |point: &Point| {
         let [q, v]: [[f64; 4]; 2] = [&point.q, &point.v].map(|x| std::array::from_fn(|i| x[i]));
         Attitude::new(q).body_velocity(&v)

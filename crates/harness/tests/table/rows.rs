@@ -4,11 +4,11 @@ use crate::table::case::{Case, Facts, Row};
 use crate::table::shapes::{Five, Four, Place, Seven, Six, Three};
 use crate::table::systems::{Field, Forces, InField, Magnetic, Moving, Thrust, Turntable, at_centre};
 use lagrangian::With;
-use models::{
-    ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
-    RollingDisk, Snakeboard, Suslov,
-};
 use sleigh::{CentreOfMass, Sleigh, SleighState};
+use test_systems::{
+    ChaplyginBall, ContactOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer, RollingDisk,
+    Snakeboard, Suslov,
+};
 
 impl<Sys, const N: usize> Row<Sys, N> {
     fn new(name: &'static str, system: impl Into<Sys>, start: Place<N>, duration: f64, facts: Facts) -> Self {
@@ -26,7 +26,7 @@ where
     Mo: Model<N, M>,
     Row<PathShape, N>: Case,
 {
-    let (name, start, reversible) = (model.name(), model.start(), model.labels().reversible);
+    let (name, start, reversible) = (model.name(), model.start(), model.reversible());
     Box::new(Row::<PathShape, N>::new(name, model, start, duration, Facts { reversible, ..facts }))
 }
 
@@ -58,10 +58,10 @@ pub fn table() -> Vec<Box<dyn Case>> {
     let moving = (q, [vx, vy, q[1] * vx - 0.5 * q[2].sin() * vy - 0.3 - 0.2 * q[0]]);
     // Across the blade, y = 0 and heading 0: y' = rate x.
     let on_the_table = ([0.4, 0.0, 0.0], [0.7, 0.3 * 0.4, 0.5]);
-    let contact = ContactOscillator::new(0.3).unwrap();
+    let contact = ContactOscillator { eps: 0.3, s: 0.0 };
     // Attitudes by unit quaternions: their length is a constraint on positions, or its rate alone.
-    let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
-    let ball = ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap();
+    let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5);
+    let ball = ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]);
     let on_positions = Facts { positions: true, one_rule: true, ..plain };
     vec![
         three("free sleigh", sleigh(), through_the_turn.to_coordinates(), 4.0, even),
@@ -117,35 +117,35 @@ pub fn table() -> Vec<Box<dyn Case>> {
             3.0,
             Facts { momentum_is_not_mass_times_velocity: true, highest_order: 6, recurrent: true, ..plain },
         ),
-        model::<Three, _, 3, 1>(Particle::flat(1.4).unwrap(), 3.0, Facts { highest_order: 6, ..plain }),
-        model::<Three, _, 3, 1>(Particle::in_well(1.4, 0.6).unwrap(), 4.0, Facts { highest_order: 6, ..here_again }),
+        model::<Three, _, 3, 1>(Particle { m: 1.4, k: 0.0 }, 3.0, Facts { highest_order: 6, ..plain }),
+        model::<Three, _, 3, 1>(Particle { m: 1.4, k: 0.6 }, 4.0, Facts { highest_order: 6, ..here_again }),
         model::<Three, _, 3, 1>(
-            KnifeEdge::new(1.3, 0.6, 1.7).unwrap(),
+            KnifeEdge { m: 1.3, I: 0.6, g: 1.7 },
             4.0,
             Facts { momenta: &["turn momentum"], ..here_again },
         ),
         model::<Three, _, 3, 1>(contact, 6.0, Facts { highest_order: 6, ..here_again }),
         model::<Three, _, 3, 1>(
-            GaugedOscillator::new(contact, 1.0).unwrap(),
+            ContactOscillator { s: 1.0, ..contact },
             6.0,
             Facts { momentum_is_not_mass_times_velocity: true, highest_order: 6, ..here_again },
         ),
         model::<Four, _, 4, 2>(
-            RollingDisk::new(1.3, 0.7, 0.5, 0.9).unwrap(),
+            RollingDisk { m: 1.3, R: 0.7, I: 0.5, J: 0.9 },
             3.0,
             Facts { momenta: &["spin momentum", "heading momentum"], ..here_again },
         ),
-        model::<Four, _, 4, 2>(RollerRacer::new(1.3, 0.8, 0.3, 0.7, 0.4).unwrap(), 2.0, plain),
+        model::<Four, _, 4, 2>(RollerRacer { m: 1.3, I1: 0.8, I2: 0.3, d1: 0.7, d2: 0.4 }, 2.0, plain),
         model::<Four, _, 4, 2>(suslov, 3.0, on_positions),
         model::<Four, _, 4, 2>(suslov.norm_by_rate(), 3.0, plain),
         model::<Six, _, 6, 3>(ball, 3.0, Facts { highest_order: 6, ..on_positions }),
         model::<Six, _, 6, 3>(ball.norm_by_rate(), 3.0, Facts { highest_order: 6, ..plain }),
         model::<Five, _, 5, 2>(
-            Snakeboard::new(1.3, 0.7, 0.3, 0.2, 0.1).unwrap(),
+            Snakeboard { m: 1.3, l: 0.7, J: 0.3, Jr: 0.2, Jw: 0.1 },
             4.0,
             Facts { momenta: &["rotor momentum", "steering momentum"], ..plain },
         ),
-        model::<Seven, _, 7, 1>(QuarticOscillator::new(1.0).unwrap(), 2.0, here_again),
+        model::<Seven, _, 7, 1>(QuarticOscillator { c: 1.0 }, 2.0, here_again),
     ]
 }
 

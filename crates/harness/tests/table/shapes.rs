@@ -5,11 +5,11 @@
 
 use crate::table::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
 use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, Scalar, System, With};
-use models::{
-    ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
-    RollingDisk, Snakeboard, Suslov,
-};
 use sleigh::Sleigh;
+use test_systems::{
+    ChaplyginBall, ContactOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer, RollingDisk,
+    Snakeboard, Suslov,
+};
 
 /// A configuration and a velocity.
 pub type Place<const N: usize> = ([f64; N], [f64; N]);
@@ -108,7 +108,7 @@ macro_rules! shape {
 
 shape! {
     /// Three coordinates, one constraint.
-    Three<3, 1>: Particle KnifeEdge ContactOscillator GaugedOscillator;
+    Three<3, 1>: Particle KnifeEdge ContactOscillator;
     Sleigh: Sleigh, InField: InField, Thrust: With<Sleigh, Thrust>, Pushed: With<InField, Thrust>, Forces: With<Sleigh, Forces>, Moving: Moving,
     Turntable: Turntable, Magnetic: Magnetic
 }

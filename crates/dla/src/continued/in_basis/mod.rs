@@ -87,9 +87,9 @@ mod tests {
     use crate::{Form, OneStep};
     use approx::assert_abs_diff_eq;
     use lagrangian::With;
-    use models::{Model, Particle};
     use sleigh::effects::{Bowl, Drag};
     use sleigh::{Sleigh, SleighState};
+    use test_systems::{Model, Particle};
 
     const STEP: f64 = 0.05;
 
@@ -119,7 +119,7 @@ mod tests {
             }
         }
         assert!(turning.kept.is_in_basis() && !asked.kept.is_in_basis());
-        let particle = Particle::flat(1.0).unwrap();
+        let particle = Particle { m: 1.0, k: 0.0 };
         let ((q, v), mut constant) = (particle.start(), method());
         let mut state = State::new(q, v, particle.angles());
         for _ in 0..200 {
