@@ -46,7 +46,7 @@ impl<'a> Account<'a> {
         let mut schedule = scene.schedule();
         if backward {
             let run = scene.run();
-            schedule = self::backward(run, system.jump_times(-run.duration, 0.0));
+            schedule = self::backward(run, system.mechanism().jump_times(-run.duration, 0.0));
         }
         if backward && tolerance.is_some() && !method.is_adaptive() {
             return Err(no_step_backward());
@@ -54,7 +54,7 @@ impl<'a> Account<'a> {
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
             let whole = method.undivided();
-            let found = recommend(&*system, &whole, (q, v), (scene.run().duration, tolerance), search);
+            let found = recommend(&*system.mechanism(), &whole, (q, v), (scene.run().duration, tolerance), search);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
         }
@@ -91,15 +91,10 @@ impl<'a> Account<'a> {
     }
 
     /// Makes it at once, with an eye on the events in so many parts of each step.
-    pub(crate) fn observed(
-        &self,
-        samples: u32,
-        observer: &mut dyn Observer,
-        progress: &mut dyn Progress,
-    ) -> Made {
+    pub(crate) fn observed(&self, samples: u32, observer: &mut dyn Observer, progress: &mut dyn Progress) -> Made {
         let events = self.events();
         let made =
-            run_observed(&*self.system, self.method, &self.request, (&events, samples), observer, progress);
+            run_observed(&*self.system.mechanism(), self.method, &self.request, (&events, samples), observer, progress);
         let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
         Made { record: made.record, events: self.happened(&crossings, made.close) }
     }
@@ -145,12 +140,7 @@ pub(crate) fn state(system: &Built<'_>, record: &Record) -> Value {
 }
 
 /// A state, a line for each number.
-pub(crate) fn numbers(
-    system: &Built<'_>,
-    t: f64,
-    q: &[f64],
-    v: &[f64],
-) -> Vec<(String, String)> {
+pub(crate) fn numbers(system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<(String, String)> {
     let line = |value: f64, unit: &str| format!("{} {unit}", number(value)).trim_end().to_owned();
     let state = system.state(t, q, v).into_iter();
     state.map(|(quantity, value)| (quantity.name, line(value, &quantity.unit))).collect()

@@ -112,11 +112,7 @@ pub(crate) fn progress_of<'a>(scene: &str, label: &str, steps: u64, interrupt: &
 
 impl Compare<'_> {
     /// The runs of all methods, as far as they come.
-    fn records(
-        &mut self,
-        system: &Built<'_>,
-        request: &Request,
-    ) -> Result<Vec<Record>, CliError> {
+    fn records(&mut self, system: &Built<'_>, request: &Request) -> Result<Vec<Record>, CliError> {
         let name = self.scene.name();
         let mut records = Vec::new();
         for method in self.methods {
@@ -128,7 +124,7 @@ impl Compare<'_> {
                 AnyScene::Sleigh(scene) => (name, scene),
                 AnyScene::Text(scene) => (name, &(&scene.words, &scene.start, &scene.run)),
             };
-            records.push(self.saves.run(scene, &**system, method, request, &mut progress)?);
+            records.push(self.saves.run(scene, &*system.mechanism(), method, request, &mut progress)?);
             progress.bar.finish_and_clear();
         }
         Ok(records)
@@ -153,7 +149,7 @@ impl Compare<'_> {
         let request = Request { schedule: self.scene.schedule(), q: q.to_vec(), v: v.to_vec(), samples: 1000 };
         let records = self.records(system, &request)?;
         let exact = exact(self.scene);
-        let start = system.state(q, v);
+        let start = system.mechanism().state(q, v);
         let mut progress = progress_of(name, "reference", 4 * request.schedule.steps, self.interrupt);
         let reference = ComparisonReference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
@@ -227,7 +223,7 @@ enum ComparisonReference<'a> {
 }
 
 impl<'a> ComparisonReference<'a> {
-    fn of<const M: usize>(
+    fn of(
         system: &Built<'_>,
         exact: Option<&'a Exact>,
         schedule: &Schedule,
@@ -245,7 +241,7 @@ impl<'a> ComparisonReference<'a> {
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_on(&**system, &method, &fine, &mut state, &mut (), progress) {
+        match harness::integrate_on(&*system.mechanism(), &method, &fine, &mut state, &mut (), progress) {
             Ok(made) if made < fine.steps => Self::Interrupted,
             Ok(made) => Self::Computed { t: fine.time(made), end: state.unwrapped() },
             Err(_) => Self::None,
@@ -267,7 +263,7 @@ fn series_of(system: &Built<'_>, record: &Record) -> Series {
     // A run without a step has nothing to draw.
     let samples = if record.steps == 0 { &[][..] } else { &record.samples[..] };
     let column = |k: Option<usize>| -> Vec<f64> {
-        let rest = vec![0.0; system.size().n];
+        let rest = vec![0.0; system.mechanism().size().n];
         let of = |k: usize| samples.iter().map(|sample| system.value(k, sample.t, &sample.q, &rest)).collect();
         k.map_or_else(Vec::new, of)
     };

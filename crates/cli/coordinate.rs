@@ -25,24 +25,12 @@ impl Coordinate {
     }
 
     /// Its value at a state, as it is: an angle with its turns.
-    pub(crate) fn value(
-        &self,
-        system: &Built<'_>,
-        t: f64,
-        q: &[f64],
-        v: &[f64],
-    ) -> f64 {
+    pub(crate) fn value(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
         system.value(self.k, t, q, v)
     }
 
     /// The same, an angle within half a turn of zero.
-    pub(crate) fn shown(
-        &self,
-        system: &Built<'_>,
-        t: f64,
-        q: &[f64],
-        v: &[f64],
-    ) -> f64 {
+    pub(crate) fn shown(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let value = self.value(system, t, q, v);
         if self.quantity.angle { within_a_turn(value) } else { value }
     }

@@ -34,9 +34,9 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     let mut failures = Vec::new();
     for (names, part) in parts {
         let built = part.built()?;
-        let (system, q, v) = (built.system(), &built.q, &built.v);
-        let measured = step_time(&*system, &schedule, q, v)
-            .and_then(|ns| Ok((ns, step_evaluations(&*system, &schedule, q, v)?)));
+        let (system, q, v) = (built.system().mechanism(), &built.q, &built.v);
+        let measured =
+            step_time(&*system, &schedule, q, v).and_then(|ns| Ok((ns, step_evaluations(&*system, &schedule, q, v)?)));
         match measured {
             Ok((ns_per_step, evaluations_per_step)) => {
                 rows.push(CostRow { effects: names, ns_per_step, evaluations_per_step });

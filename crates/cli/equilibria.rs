@@ -73,13 +73,14 @@ struct Find<'a> {
 impl Find<'_> {
     fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<FoundMotions, CliError> {
         let Self { scene, method, portrait } = self;
-        if !system.jump_times(0.0, scene.run().duration).is_empty() {
+        let mechanism = system.mechanism();
+        if !mechanism.jump_times(0.0, scene.run().duration).is_empty() {
             return Err(EquilibriumError::TimeDependent.into());
         }
         let own = system.own();
-        let all = relative_equilibria(&**system, own, q, v)?;
+        let all = relative_equilibria(&*mechanism, own, q, v)?;
         let h = scene.run().actual_step();
-        let mut map = DiscreteMap::new(&**system, own, method);
+        let map = DiscreteMap::new(&*mechanism, own, method);
         let mut row = |e: &Equilibrium| MotionRow {
             motion: steady::motion(system, e),
             rates: system.sleigh().map(|sleigh| sleigh.sleigh_state(&e.q, &e.v)).map(|at| [at.speed, at.turn_rate]),
@@ -113,6 +114,7 @@ fn orbits(
     schedule: &Schedule,
     q: &[f64],
 ) -> Vec<Vec<[f64; 2]>> {
+    let mechanism = system.mechanism();
     let energy = sleigh.mass() * speed * speed + sleigh.pivot_inertia() * turn_rate * turn_rate;
     let speed = (energy / sleigh.mass()).sqrt();
     let (levels, turn) = PORTRAIT;
@@ -121,10 +123,10 @@ fn orbits(
         for turn in [turn, -turn] {
             let mut xi = vec![level * speed, level.abs() * turn * speed];
             xi.resize(q.len(), 0.0);
-            let Ok(v) = system.velocity_of(0.0, q, &xi) else { continue };
+            let Ok(v) = mechanism.velocity_of(0.0, q, &xi) else { continue };
             let mut nodes = Trajectory::every(1);
             // An orbit that fails is shown as far as it goes.
-            let _ = integrate_pieces(&**system, method, schedule, &mut system.state(q, &v), &mut nodes);
+            let _ = integrate_pieces(&*mechanism, method, schedule, &mut mechanism.state(q, &v), &mut nodes);
             let seen = nodes.nodes().iter().map(|node| blade.sleigh_state(&node.q, &node.v));
             orbits.push(seen.map(|state| [state.speed, state.turn_rate]).collect());
         }

@@ -26,7 +26,7 @@ fn imposed() -> CliError {
 /// [`CliError::Request`] of a scene that imposes velocities.
 pub(crate) fn free(scene: &AnyScene) -> Result<BuiltScene, CliError> {
     let built = scene.built()?;
-    if built.imposes_velocities() { Err(imposed()) } else { Ok(built) }
+    if built.system().imposes_velocities() { Err(imposed()) } else { Ok(built) }
 }
 
 /// The steps that are counted, and those before them.
@@ -51,14 +51,10 @@ pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interr
 }
 
 /// A start with the energy that is asked for.
-pub(crate) fn asked(
-    system: &Built<'_>,
-    start: StartPlace,
-    wanted: Option<f64>,
-) -> Result<StartPlace, CliError> {
+pub(crate) fn asked(system: &Built<'_>, start: StartPlace, wanted: Option<f64>) -> Result<StartPlace, CliError> {
     let Some(wanted) = wanted else { return Ok(start) };
     with_energy(system, &start, wanted).ok_or_else(|| {
-        let at_rest = system.energy(0.0, &start.0, &vec![0.0; start.1.len()]);
+        let at_rest = system.mechanism().energy(0.0, &start.0, &vec![0.0; start.1.len()]);
         CliError::Request(format!(
             "--energy {wanted:?}: no multiple of the velocity of the start has this energy; at rest at the start the \
                 energy is {at_rest:?} J"

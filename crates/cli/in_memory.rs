@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::trigger::Trigger;
 use crate::{inspect, substeps, train};
 use dla::{AnyState, Node, Samples, Substeps, Trajectory, View};
-use harness::{Again, EVENT_SAMPLES, Method};
+use harness::{EVENT_SAMPLES, Method};
 use scene::{AnyScene, Built, Column};
 use serde_json::Value;
 
@@ -143,6 +143,7 @@ impl InMemory<'_> {
         self.request.fits(schedule.steps, system.columns(&account.start()).len())?;
         let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
         let (mut trajectory, sampled): (_, Vec<Node>);
+        let mechanism = system.mechanism();
         let (made, nodes) = if times.is_empty() {
             trajectory = Trajectory::every(*every);
             let made = account.observed(EVENT_SAMPLES, &mut trajectory, &mut shown);
@@ -152,7 +153,7 @@ impl InMemory<'_> {
             let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
             // The motion at the times asked for, up to where the run comes; the work is not known there.
             let node = |(t, state): (&f64, &AnyState)| {
-                let piece = system.smooth_piece(*t);
+                let piece = mechanism.smooth_piece(*t);
                 let view = View { system: &*piece, k: 0, t: *t, state };
                 let (energy, constraint) = (view.energy(), view.constraint());
                 let (q, v) = (state.unwrapped(), state.v().to_vec());

@@ -79,13 +79,7 @@ pub(crate) fn compared(
 }
 
 /// The same with the state at the end.
-pub(crate) fn compared_of(
-    scene: &str,
-    run: &Record,
-    end: &Value,
-    error: Option<f64>,
-    better: &[(&str, f64)],
-) -> Value {
+pub(crate) fn compared_of(scene: &str, run: &Record, end: &Value, error: Option<f64>, better: &[(&str, f64)]) -> Value {
     let mut object = record_of(scene, run, end);
     object["energy"]["drift_per_time"] = json!(run.energy.drift_per_time);
     let drift = &run.energy.drift;

@@ -8,7 +8,7 @@ use crate::progress::Interruptible;
 use crate::{inspect, json, notes, progress, stability_map, table, terminal};
 use dla::has_tangents;
 use harness::Method;
-use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, kaplan_yorke, lyapunov};
+use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, kaplan_yorke};
 use harness::report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, MAX_STEPS};
 use serde_json::{Value, json};
@@ -72,11 +72,12 @@ impl Exponents<'_> {
         let interrupt = Interrupt::listen();
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
         let mut progress = Interruptible { bar, interrupt: &interrupt };
-        let found = lyapunov(&**system, system.own(), &self.method, &request, &mut progress);
+        let mechanism = system.mechanism();
+        let found = harness::analysis::lyapunov(&*mechanism, system.own(), &self.method, &request, &mut progress);
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
         let made = interrupt.asked().then(|| format!("the exponents cover {} s", table::number(found.time)));
-        let told = self.tell(&found, system.energy(0.0, &request.q, &request.v), made.as_deref());
+        let told = self.tell(&found, mechanism.energy(0.0, &request.q, &request.v), made.as_deref());
         unless_interrupted(made, None, told)
     }
 }

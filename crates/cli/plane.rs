@@ -120,13 +120,7 @@ impl Plane {
 
 impl Surface {
     /// The function whose zeros are on the surface; of an angle, also the opposite ones.
-    pub(crate) fn value(
-        &self,
-        system: &Built<'_>,
-        t: f64,
-        q: &[f64],
-        v: &[f64],
-    ) -> f64 {
+    pub(crate) fn value(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
         match self {
             Self::Of(coordinate, value) => {
                 let off = coordinate.value(system, t, q, v) - value;
@@ -137,13 +131,7 @@ impl Surface {
     }
 
     /// Whether a zero of the function is on the surface.
-    pub(crate) fn holds(
-        &self,
-        system: &Built<'_>,
-        t: f64,
-        q: &[f64],
-        v: &[f64],
-    ) -> bool {
+    pub(crate) fn holds(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> bool {
         match self {
             Self::Of(coordinate, value) if coordinate.quantity.angle => {
                 (coordinate.value(system, t, q, v) - value).cos() > 0.0

@@ -152,11 +152,12 @@ struct Measure<'a> {
 impl Measure<'_> {
     fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<Measurement, CliError> {
         let apart = |a: &[f64], b: &[f64]| system.distance(a, b);
+        let mechanism = system.mechanism();
         let exact = exact(self.scene);
         let mut duration = self.scene.run().duration;
         let mut halvings = 0;
         let (motion, reference) = loop {
-            let motion = ReferenceMotion::new(&**system, q, v, duration);
+            let motion = ReferenceMotion::new(&*mechanism, q, v, duration);
             let reference = Reference::converged(&motion, &apart).map(|found| {
                 let exact = exact.as_ref().map(|exact| place_at(exact, duration));
                 known(exact, &found, apart)
@@ -185,11 +186,7 @@ impl Measure<'_> {
 }
 
 /// The end in closed form, with its distance from the computed one as its error; the computed end where there is none.
-fn known(
-    exact: Option<Vec<f64>>,
-    computed: &Reference,
-    apart: impl Fn(&[f64], &[f64]) -> f64,
-) -> KnownEnd<Vec<f64>> {
+fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &[f64]) -> f64) -> KnownEnd<Vec<f64>> {
     let (end, steps, error) = (computed.q.clone(), computed.steps, computed.error);
     match exact {
         Some(exact) => {

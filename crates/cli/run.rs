@@ -111,17 +111,13 @@ impl<'a> Run<'a> {
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
         let events = account.events();
         let watched = (&events[..], *event_samples);
-        let outcome = run_saved_watched(&**system, method, request, watched, &mut saving, nodes, progress);
+        let outcome = run_saved_watched(&*system.mechanism(), method, request, watched, &mut saving, nodes, progress);
         let made = outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
         Ok((Made { record: made.record, events: account.happened(&made.crossings, made.close) }, saver.outcome()))
     }
 
     /// The output, begun, or as far as it had come.
-    fn output(
-        &self,
-        account: &Account<'_>,
-        read: Option<&Checkpoint>,
-    ) -> Result<Option<Output<'a>>, CliError> {
+    fn output(&self, account: &Account<'_>, read: Option<&Checkpoint>) -> Result<Option<Output<'a>>, CliError> {
         let Some(asked) = self.out else { return Ok(None) };
         let start = account.start();
         let scene = (self.scene.title(), self.scene.run(), self.scene.to_toml().ok());
@@ -132,11 +128,7 @@ impl<'a> Run<'a> {
 }
 
 /// Hands a node to the output.
-fn write(
-    system: &Built<'_>,
-    node: &Node,
-    output: &RefCell<Option<Output<'_>>>,
-) {
+fn write(system: &Built<'_>, node: &Node, output: &RefCell<Option<Output<'_>>>) {
     if let Some(output) = output.borrow_mut().as_mut() {
         output.row(node.k, &system.row(node));
     }

@@ -117,7 +117,13 @@ impl Sections<'_> {
             let event = Event::new(plane.text.clone(), function);
             let event =
                 if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section(&**system, &self.method, &schedule, (&starts[i].0, &starts[i].1), &event);
+            let found = harness::analysis::section(
+                &*system.mechanism(),
+                &self.method,
+                &schedule,
+                (&starts[i].0, &starts[i].1),
+                &event,
+            );
             let point = |crossing: &dla::Crossing| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
                 surface.holds(system, t, &q, v).then(|| SectionPoint {

@@ -87,7 +87,7 @@ impl Map<'_> {
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    match lyapunov(&**system, system.own(), &self.method, &request, &mut ()) {
+                    match lyapunov(&*system.mechanism(), system.own(), &self.method, &request, &mut ()) {
                         // One that a signal may have ended is left out.
                         Ok(_) if interrupt.asked() => return Cell::Left,
                         Ok(found) => match found.failure {

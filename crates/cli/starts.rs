@@ -3,14 +3,11 @@ use sleigh::Sleigh;
 use std::f64::consts::TAU;
 
 /// The start with velocities so many times as large that it has that energy (J); none where it cannot.
-pub(crate) fn with_energy(
-    system: &Built<'_>,
-    (q, v): &StartPlace,
-    wanted: f64,
-) -> Option<StartPlace> {
+pub(crate) fn with_energy(system: &Built<'_>, (q, v): &StartPlace, wanted: f64) -> Option<StartPlace> {
     // The energy is quadratic in the velocity.
     let scaled = |factor: f64| -> Vec<f64> { v.iter().map(|v| factor * v).collect() };
-    let at = |factor: f64| system.energy(0.0, q, &scaled(factor));
+    let mechanism = system.mechanism();
+    let at = |factor: f64| mechanism.energy(0.0, q, &scaled(factor));
     let (rest, ahead, back) = (at(0.0), at(1.0), at(-1.0));
     let (square, linear) = (0.5 * (ahead + back) - rest, 0.5 * (ahead - back));
     let half = 0.5 * linear / square;
@@ -29,13 +26,8 @@ fn sequence(dimensions: usize) -> impl Fn(u64, usize) -> f64 {
 
 /// `count` starts: the first as it is, and others at the same place and of the same energy, with directions of motion that fill the sphere of
 /// directions evenly; those of a sleigh differ in heading too. Those that the energy does not allow are left out.
-pub(crate) fn spread(
-    system: &Built<'_>,
-    first: &StartPlace,
-    sleigh: Option<&Sleigh>,
-    count: u64,
-) -> Vec<StartPlace> {
-    let wanted = system.energy(0.0, &first.0, &first.1);
+pub(crate) fn spread(system: &Built<'_>, first: &StartPlace, sleigh: Option<&Sleigh>, count: u64) -> Vec<StartPlace> {
+    let wanted = system.mechanism().energy(0.0, &first.0, &first.1);
     let turned = |i: u64| match system.sleigh().zip(sleigh) {
         Some((blade, sleigh)) => turned(system, blade, sleigh, first, i),
         None => directed(system, first, i),
@@ -64,11 +56,7 @@ fn turned(
 }
 
 /// The system at the same place, its quasi-velocities in a direction of which the kinetic energy is a sphere.
-fn directed(
-    system: &Built<'_>,
-    first: &StartPlace,
-    i: u64,
-) -> Option<StartPlace> {
+fn directed(system: &Built<'_>, first: &StartPlace, i: u64) -> Option<StartPlace> {
     let (n, m) = system.own();
     let count = n - m;
     let next = sequence(count);
@@ -81,7 +69,8 @@ fn directed(
         })
         .collect();
     let q = &first.0;
-    let energy = |xi: &[f64]| Some(system.energy(0.0, q, &system.velocity_of(0.0, q, xi).ok()?));
+    let mechanism = system.mechanism();
+    let energy = |xi: &[f64]| Some(mechanism.energy(0.0, q, &mechanism.velocity_of(0.0, q, xi).ok()?));
     let mut xi = vec![0.0; q.len()];
     let rest = energy(&xi)?;
     let unit = |k: usize, sign: f64| -> Vec<f64> { (0..q.len()).map(|j| if j == k { sign } else { 0.0 }).collect() };
@@ -89,5 +78,5 @@ fn directed(
         let twice = energy(&unit(k, 1.0))? + energy(&unit(k, -1.0))? - 2.0 * rest;
         xi[k] = if twice > 0.0 { part / twice.sqrt() } else { 0.0 };
     }
-    Some((q.clone(), system.velocity_of(0.0, q, &xi).ok()?))
+    Some((q.clone(), mechanism.velocity_of(0.0, q, &xi).ok()?))
 }

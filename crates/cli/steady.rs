@@ -54,7 +54,7 @@ fn of_sleigh(system: &dyn SceneSystem, e: &Equilibrium) -> SteadyMotion {
 
 /// Its rates by their names, and the coordinates on which the equations depend, with their values.
 fn of_text(coordinates: &[Coordinate], e: &Equilibrium) -> SteadyMotion {
-    let rates: Vec<_> = coordinates.iter().zip(&e.v).map(|(of, rate)| (format!("{}'", of.name), rate)).collect();
+    let rates: Vec<_> = coordinates.iter().zip(&e.v).map(|(of, rate)| (format!("{}'", of.name), *rate)).collect();
     let place = e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
     let place: Vec<(String, f64)> = place.collect();
     let object =

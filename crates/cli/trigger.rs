@@ -99,10 +99,7 @@ impl Trigger {
     ///
     /// # Errors
     /// [`CliError::Request`] where the system has no such quantity.
-    pub(crate) fn on(
-        &self,
-        system: &Built<'_>,
-    ) -> Result<WatchedTriggers<'_, Coordinate>, CliError> {
+    pub(crate) fn on(&self, system: &Built<'_>) -> Result<WatchedTriggers<'_, Coordinate>, CliError> {
         let find = |name: &str| Coordinate::of(system, name).ok().map(|found| (found.clone(), found.quantity.angle));
         self.find(find, || system.quantities())
     }

@@ -1,5 +1,5 @@
 use crate::table::{counted, number};
-use scene::{Interpolation,  PathShape, PathSpec, Scene, SceneEffect, Started, TimeSpec, TrailersSpec};
+use scene::{Interpolation, PathShape, PathSpec, Scene, SceneEffect, Started, TimeSpec, TrailersSpec};
 use sleigh::{SleighError, SleighState};
 
 /// The facts of a scene, with the state that it starts in.

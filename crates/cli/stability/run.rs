@@ -4,11 +4,11 @@ use super::case::{Cases, Check, HardCase, Kind, Run, SLEIGH, makes};
 use super::formulas::Formulas;
 use crate::error::CliError;
 use crate::inspect::method_names;
-use dla::{Dependency, Hint, Schedule, State, StepError};
+use dla::{AnyState, Dependency, Hint, Schedule, StepError};
 use harness::stability::check::{self, Finding};
 use harness::stability::{Recorded, Recorder, Trial, VALUES, Verdict, claims, judge};
 use harness::{Method, integrate_from};
-use scene::{AnyScene, Built, Setting, Visitor, with_settings};
+use scene::{AnyScene, BuiltScene, Setting, with_settings};
 
 impl HardCase {
     /// Makes the runs of the case by the method, and judges them.
@@ -124,7 +124,8 @@ impl Bench<'_> {
             back: !other && (self.run.back || self.shared.back),
             schedule: Schedule { t0: 0.0, step: run.step, steps },
         };
-        let (names, recorded) = scene.visit(recording).map_err(|error| error.to_string())?;
+        let built = scene.built().map_err(|error| error.to_string())?;
+        let (names, recorded) = recording.on(&built);
         Ok((scene, names, recorded))
     }
 }
@@ -177,31 +178,30 @@ struct Recording<'a> {
     schedule: Schedule,
 }
 
-impl Visitor for Recording<'_> {
-    type Output = (Vec<String>, Recorded);
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+impl Recording<'_> {
+    fn on(self, built: &BuiltScene) -> (Vec<String>, Recorded) {
+        let system = built.system();
+        let mechanism = system.mechanism();
         // The first three are places; after them are the rates, and of a sleigh those of its body and of a rotor.
         let last = system.named("rotor_rate").unwrap_or(VALUES - 1);
         let places = [0, 1, 2, 3, 4, last];
         let names = system.quantities();
         let names = places.iter().filter_map(|k| names.get(*k)).map(|quantity| quantity.name.clone()).collect();
-        let look = |state: &State<N>| -> [f64; VALUES] {
+        let look = |state: &AnyState| -> [f64; VALUES] {
             // The velocities in the angles that the method sees, the place with all its turns.
             let place = state.unwrapped();
             std::array::from_fn(|i| if i < 3 { place[i] } else { system.value(places[i], 0.0, state.q(), state.v()) })
         };
-        let mut state = State::new(q, v, system.angles());
+        let mut state = mechanism.state(&built.q, &built.v);
         let mut recorder = Recorder::new(self.every, &look);
         let end = self.from + self.schedule.steps;
         let schedule = Schedule { steps: end, ..self.schedule };
-        let mut outcome =
-            integrate_from(self.from, (&system).into(), self.method, &schedule, &mut state, &mut recorder);
+        let mut outcome = integrate_from(self.from, &*mechanism, self.method, &schedule, &mut state, &mut recorder);
         if self.back && outcome.is_ok() {
             state = state.reversed();
             // As a part of the same run: at the beginning of another a slip would be taken from the velocity.
             let back = Schedule { steps: 2 * end, ..schedule };
-            outcome = integrate_from(end, (&system).into(), self.method, &back, &mut state, &mut recorder);
+            outcome = integrate_from(end, &*mechanism, self.method, &back, &mut state, &mut recorder);
         }
         (names, recorder.recorded(outcome.err()))
     }

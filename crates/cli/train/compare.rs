@@ -57,7 +57,7 @@ pub(crate) fn compare_scene(
             refused: record.refusal().is_some(),
         });
         let drawn = if record.steps == 0 { &[][..] } else { &nodes[..] };
-        let sampled = |of: fn(&harness::Sample<3>) -> f64| record.samples.iter().take(drawn.len()).map(of).collect();
+        let sampled = |of: fn(&harness::Sample) -> f64| record.samples.iter().take(drawn.len()).map(of).collect();
         series.push(Series {
             label: record.method.name.to_owned(),
             path: drawn.iter().map(|node| [node.q[0], node.q[1]]).collect(),

@@ -83,11 +83,12 @@ pub use rebased::Rebased;
 pub use reduced_field::{ReducedField, reduced_field};
 pub use resolved::Halved;
 pub use run::{
-    AnyState, AnyTangent, Checkpoint, CheckpointError, Close, Crossing, Direction, Event, Integrator, Mechanism, Member, Node, ParametrisedMechanics, ParametrisedMechanism, Nodes,
-    Observer, OwnMethods, Part, Piece, PiecewiseMechanics, Place, RecommendError, Recommendation, Report, RunError,
-    Samples, Schedule, SeeOwnStep, Shorter, Size, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory,
-    Undivided, View, Watch, Work, Zero, Zeros, again, close_crossings, drive, drive_part, fitted, make_steps,
-    onto_constraint, piece_by_piece, pieces, recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
+    AnyState, AnyTangent, Checkpoint, CheckpointError, Close, Crossing, Direction, Event, Integrator, Mechanism,
+    Member, Node, Nodes, Observer, OwnMethods, ParametrisedMechanics, ParametrisedMechanism, Part, Piece,
+    PiecewiseMechanics, Place, RecommendError, Recommendation, Report, RunError, Samples, Schedule, SeeOwnStep,
+    Shorter, Size, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory, Undivided, View, Watch, Work, Zero,
+    Zeros, again, close_crossings, drive, drive_part, fitted, make_steps, onto_constraint, piece_by_piece, pieces,
+    recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
 };
 pub use runaway::Runaway;
 pub use sensitivity::{

@@ -29,7 +29,7 @@ pub use cost::{step_evaluations, step_time};
 pub use dla::{METHODS, Method, MethodError, MethodInfo, MethodKind, SubstepSummary};
 pub use drift::{Blocks, Drift, DriftVerdict, Energies, EnergyJump};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate_on, integrate_pieces, run, timed};
+pub use run::{Request, integrate_from, integrate_on, integrate_pieces, run, timed};
 pub use saved::{SavedCrossing, SavedRun, Saving, run_saved, run_saved_watched};
 pub use sensitivities::{Moving, SensitivitiesError, differentiated, sensitivities};
 pub use statistics::Trend;

@@ -29,7 +29,23 @@ pub fn integrate_pieces(
     state: &mut AnyState,
     observer: &mut dyn Observer,
 ) -> Result<u64, RunError> {
-    piece_by_piece(0, system, schedule, state, |piece, Piece { steps, schedule }, state| {
+    integrate_from(0, system, method, schedule, state, observer)
+}
+
+/// The same for a run that has made so many steps already, whose observer then sees the first node by
+/// [`Observer::resume`].
+///
+/// # Errors
+/// As [`integrate_pieces`].
+pub fn integrate_from(
+    from: u64,
+    system: &dyn Mechanism,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut AnyState,
+    observer: &mut dyn Observer,
+) -> Result<u64, RunError> {
+    piece_by_piece(from, system, schedule, state, |piece, Piece { steps, schedule }, state| {
         // A method for each piece: nothing that it remembers holds across a jump.
         let mut integrator = piece.integrator(method);
         substepped_part(piece, &mut *integrator, method.substeps(), &schedule, steps, state, observer)

@@ -32,14 +32,14 @@ pub use npz::write_npz;
 #[cfg(feature = "assembly")]
 pub use assembly;
 pub use dla::{
-    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, DiscreteLagrangian, Dla, Equations, Event, Form, Hermite,
-    Hint, History, Mechanics, Mechanism, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
-    Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Subject, Trajectory, View,
-    Watch, consistent_start, slip,
+    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, DiscreteLagrangian, Dla, Equations, Event,
+    Form, Hermite, Hint, History, Mechanics, Mechanism, Newton, NewtonError, Node, NotANumber, Observer, OneStep,
+    RecommendError, Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport,
+    Subject, Trajectory, View, Watch, consistent_start, slip,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Constraint, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion,
-    MotionError, Parametrised, Reduced, Rule, Scalar, ScalarFunction, System, Trapezoid, With, WithBasis, classify,
+    self, AdmissibleBasis, Alpha, Constraint, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError,
+    Parametrised, Reduced, Rule, Scalar, ScalarFunction, System, Trapezoid, With, WithBasis, classify,
     constraint_residual, energy, mass_matrix, momentum, vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};

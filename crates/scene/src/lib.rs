@@ -56,7 +56,5 @@ pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
 pub use settings::{Setting, with_settings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
-pub use systems::{
-    AnyEffect, Column, EffectList, EffectPower, PARAMETERS, SceneSystem, SleighFamily, Started,
-};
+pub use systems::{AnyEffect, Column, EffectList, EffectPower, PARAMETERS, SceneSystem, SleighFamily, Started};
 pub use train::TrainError;

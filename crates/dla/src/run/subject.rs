@@ -8,9 +8,9 @@ use crate::power::work_between;
 use crate::reduced_flow::reduced_flow;
 use crate::suspect::suspect_along;
 use crate::{
-    Checkpoint, CheckpointError, Differentiable, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method, OneStep,
-    PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State, StepError,
-    StepReport, has_tangents, onto_constraint, reduced_field, slip,
+    Checkpoint, CheckpointError, Differentiable, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method,
+    OneStep, PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State,
+    StepError, StepReport, has_tangents, onto_constraint, reduced_field, slip,
 };
 use lagrangian::linear::{Singular, larger, largest};
 use lagrangian::{Gradients, MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
@@ -71,14 +71,13 @@ type StepDerivativeOf<const N: usize, const M: usize> = fn(
 ) -> Result<DMatrix<f64>, SensitivityError>;
 
 impl<const N: usize, const M: usize> Shaped<N, M> {
-    const ALL: Self =
-        Self {
-            stepper: Method::stepper_of,
-            field: reduced_field,
-            flow: reduced_flow,
-            differentiable,
-            derivative: reduced_derivative,
-        };
+    const ALL: Self = Self {
+        stepper: Method::stepper_of,
+        field: reduced_field,
+        flow: reduced_flow,
+        differentiable,
+        derivative: reduced_derivative,
+    };
 }
 
 /// The derivative of a step in the coordinates `(q, xi)`.
@@ -293,10 +292,12 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
 
     fn near(&self, t: f64, q: &[f64], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanism)) -> bool {
         match self.with_derivatives() {
-            Some(system) => {
-                system.near_seeded(t, &row(q), basis, &mut |number, near| then(number, &self.other(Held::Seeded(near), &(), self.at)))
-            }
-            None => self.system().near(t, &row(q), basis, &mut |number, near| then(number, &self.other(Held::Smooth(near), &(), self.at))),
+            Some(system) => system.near_seeded(t, &row(q), basis, &mut |number, near| {
+                then(number, &self.other(Held::Seeded(near), &(), self.at))
+            }),
+            None => self.system().near(t, &row(q), basis, &mut |number, near| {
+                then(number, &self.other(Held::Smooth(near), &(), self.at))
+            }),
         }
     }
 
