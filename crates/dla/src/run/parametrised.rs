@@ -1,6 +1,5 @@
 use super::integrator::OTHER_SHAPE;
 use super::mechanism::Mechanism;
-use super::state::row;
 use super::subject::{Subject, seeded_row};
 use crate::method::differentiable;
 use crate::{AnyState, Method, Report, Sensitivity, SensitivityError, Tangent, Variation};
@@ -13,7 +12,7 @@ pub trait ParametrisedMechanics<const N: usize, const M: usize, const P: usize> 
     fn at(&self, basis: u64, p: &[Seeded; P]) -> Box<dyn Gradients<N, M> + '_>;
 }
 
-/// A variation of a state and of the parameters of its system, of sizes known at run time.
+/// A variation of a state and of the parameters of its system, of sizes known at run time; what a list lacks is zero.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AnyTangent {
     /// Of the configuration.
@@ -107,11 +106,17 @@ impl<const N: usize, const M: usize, const P: usize> ParametrisedMechanism for M
         let (start, end) = start.typed().zip(end.typed()).ok_or(OTHER_SHAPE)?;
         let derivative = sensitivity.between(&*rule, time, start, end, report.typed())?;
         let carried = |tangent: &AnyTangent| {
-            let state = Variation { q: row(&tangent.q), v: row(&tangent.v) };
+            let (q, v): ([f64; N], [f64; N]) = (filled(&tangent.q), filled(&tangent.v));
+            let state = Variation { q, v };
             let Tangent { state, parameters } =
-                derivative.apply(&Tangent { state, parameters: row(&tangent.parameters) });
+                derivative.apply(&Tangent { state, parameters: filled(&tangent.parameters) });
             AnyTangent { q: state.q.to_vec(), v: state.v.to_vec(), parameters: parameters.to_vec() }
         };
         Ok(tangents.iter().map(carried).collect())
     }
+}
+
+/// A list as a row, with zeros in the places that it lacks.
+fn filled<const K: usize>(x: &[f64]) -> [f64; K] {
+    from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }

@@ -1,70 +1,70 @@
 use super::{Asked, BLOCK, SensitivityRows, chosen, failed};
 use cli::{Refusal, ShownToCaller};
-use dla::{Node, Tangent, Variation, View};
-use harness::{Moving, ParametrisedMechanics, Request, sensitivities};
-use lagrangian::{Gradients, Scalar, Seeded};
+use dla::{AnyTangent, Node, ParametrisedMechanism, View};
+use harness::{Moving, Request, sensitivities};
+use lagrangian::{Scalar, Seeded};
 use scene::Built;
 
 /// A state with its derivatives in the directions of a block, the parameters with theirs.
-pub(super) struct Carried<const N: usize> {
+pub(super) struct Carried<'a> {
+    family: &'a dyn ParametrisedMechanism,
     pub(super) t: f64,
-    pub(super) q: [Seeded; N],
-    pub(super) v: [Seeded; N],
+    pub(super) q: Vec<Seeded>,
+    pub(super) v: Vec<Seeded>,
     pub(super) p: [Seeded; BLOCK],
 }
 
-impl<const N: usize> Carried<N> {
-    fn new(at: &Moving<N, BLOCK>, parameters: &[f64; BLOCK]) -> Self {
-        let seeded = |x: f64, along: &dyn Fn(&Tangent<N, BLOCK>) -> f64| {
+impl<'a> Carried<'a> {
+    fn new(family: &'a dyn ParametrisedMechanism, at: &Moving) -> Self {
+        let seeded = |x: f64, i: usize, of: fn(&AnyTangent) -> &[f64]| {
+            let along = |tangent: &AnyTangent| of(tangent).get(i).copied().unwrap_or(0.0);
             let mut number = Seeded::constant(x);
             number.eps.iter_mut().zip(&at.tangents).for_each(|(eps, tangent)| *eps = along(tangent));
             number
         };
-        let (q, v) = (at.state.unwrapped(), *at.state.v());
+        let all = |x: &[f64], of| x.iter().enumerate().map(|(i, x)| seeded(*x, i, of)).collect();
+        let parameters = family.parameters();
+        let value = |k: usize| parameters.get(k).copied().unwrap_or(0.0);
         Self {
+            family,
             t: at.t,
-            q: std::array::from_fn(|i| seeded(q[i], &|tangent| tangent.state.q[i])),
-            v: std::array::from_fn(|i| seeded(v[i], &|tangent| tangent.state.v[i])),
-            p: std::array::from_fn(|k| seeded(parameters[k], &|tangent| tangent.parameters[k])),
+            q: all(&at.state.unwrapped(), |tangent| &tangent.q),
+            v: all(at.state.v(), |tangent| &tangent.v),
+            p: std::array::from_fn(|k| seeded(value(k), k, |tangent| &tangent.parameters)),
         }
     }
 
     /// The energy `v . L_v - L`.
-    pub(super) fn energy<const M: usize>(&self, model: &dyn Gradients<N, M>) -> Seeded {
-        let t = Seeded::constant(self.t);
-        let momentum = model.momentum(t, &self.q, &self.v);
-        let twice = self.v.iter().zip(momentum).fold(Seeded::zero(), |sum, (v, p)| sum + *v * p);
-        twice - model.lagrangian(t, &self.q, &self.v)
+    pub(super) fn energy(&self) -> Seeded {
+        self.family.energy(self.t, &self.q, &self.v, &self.p)
     }
 }
 
 /// The motion of one scene, in a block of keys.
-pub(super) struct DifferentiatedMotion<'a, const N: usize, const M: usize> {
-    pub(super) system: Built<'a, N, M>,
-    pub(super) family: &'a dyn ParametrisedMechanics<N, M, BLOCK>,
-    pub(super) parameters: [f64; BLOCK],
-    pub(super) q: [f64; N],
-    pub(super) v: [f64; N],
+pub(super) struct DifferentiatedMotion<'a> {
+    pub(super) system: Built<'a>,
+    pub(super) family: &'a dyn ParametrisedMechanism,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
 }
 
-impl<const N: usize, const M: usize> DifferentiatedMotion<'_, N, M> {
+impl DifferentiatedMotion<'_> {
     /// The rows of a run: `start` is how it begins in each of the keys, `told` gives all numbers of a state that have derivatives, by the
     /// names `known`, the first `usual` of which are told where no columns are asked for.
     pub(super) fn rows(
         &self,
         &Asked { method, schedule, request, caller }: &Asked<'_>,
-        start: Vec<Tangent<N, BLOCK>>,
+        start: Vec<AnyTangent>,
         (known, usual): (&[String], usize),
-        told: impl Fn(&Carried<N>) -> Vec<Seeded>,
+        told: impl Fn(&Carried<'_>) -> Vec<Seeded>,
     ) -> Result<SensitivityRows, Refusal> {
         let chosen = chosen(&request.columns, known, usual)?;
-        let run = Request { schedule, q: self.q, v: self.v, samples: 1 };
+        let run = Request { schedule, q: self.q.clone(), v: self.v.clone(), samples: 1 };
         let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
-        let (family, system) = ((self.family, self.parameters), (&*self.system, (&self.system).into()));
-        let made = sensitivities(system, method, &run, &request.times, family, start, &mut shown);
+        let made = sensitivities(self.family, method, &run, &request.times, start, &mut shown);
         let made = made.map_err(|error| failed(&error))?;
         let numbers = made.iter().flat_map(|at| {
-            let told = told(&Carried::new(at, &self.parameters));
+            let told = told(&Carried::new(self.family, at));
             let node = self.node(at);
             let (names, row) = (self.system.columns(&node), self.system.row(&node));
             // The number is that of the run, to the last bit.
@@ -82,20 +82,23 @@ impl<const N: usize, const M: usize> DifferentiatedMotion<'_, N, M> {
     }
 
     /// A state as a node of a run.
-    fn node(&self, at: &Moving<N, BLOCK>) -> Node<N, M> {
-        let piece = self.system.smooth_piece(at.t);
+    fn node(&self, at: &Moving) -> Node {
+        let mechanism = self.system.mechanism();
+        let piece = mechanism.smooth_piece(at.t);
         let view = View { system: &*piece, k: 0, t: at.t, state: &at.state };
-        let (q, v, energy, constraint) = (at.state.unwrapped(), *at.state.v(), view.energy(), view.constraint());
+        let (energy, constraint) = (view.energy(), view.constraint());
+        let (q, v) = (at.state.unwrapped(), at.state.v().to_vec());
         Node { k: 0, t: at.t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
     }
 }
 
 /// The start does not move, and one parameter does.
-pub(super) fn of_parameter<const N: usize>(place: usize) -> Tangent<N, BLOCK> {
-    Tangent { state: Variation::ZERO, parameters: std::array::from_fn(|k| f64::from(u8::from(k == place))) }
+pub(super) fn of_parameter(place: usize) -> AnyTangent {
+    let parameters = (0..BLOCK).map(|k| f64::from(u8::from(k == place))).collect();
+    AnyTangent { parameters, ..AnyTangent::default() }
 }
 
 /// The parameters stay, and the start moves.
-pub(super) fn of_start<const N: usize>(q: [f64; N], v: [f64; N]) -> Tangent<N, BLOCK> {
-    Tangent { state: Variation { q, v }, parameters: [0.0; BLOCK] }
+pub(super) fn of_start(q: Vec<f64>, v: Vec<f64>) -> AnyTangent {
+    AnyTangent { q, v, parameters: vec![0.0; BLOCK] }
 }

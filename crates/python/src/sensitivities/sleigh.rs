@@ -1,10 +1,9 @@
 use super::motion::{Carried, DifferentiatedMotion, of_parameter, of_start};
-use super::{Asked, BLOCK, SensitivityRows, no_key, refused};
+use super::{Asked, SensitivityRows, no_key, refused};
 use cli::Refusal;
-use dla::Tangent;
-use harness::ParametrisedMechanics;
-use lagrangian::{Gradients, Scalar, Seeded};
-use scene::{AnySystem, Built, PARAMETERS, Scene, SleighFamily, Started};
+use dla::AnyTangent;
+use lagrangian::Scalar;
+use scene::{Built, PARAMETERS, Scene, Started};
 
 /// The keys of the start.
 const START: [&str; 5] = ["start.x", "start.y", "start.heading", "start.speed", "start.turn_rate"];
@@ -14,55 +13,29 @@ const COLUMNS: [&str; 5] = ["x", "y", "heading", "speed", "turn_rate"];
 const OF_ROTOR: [&str; 2] = ["rotor_angle", "rotor_rate"];
 const FURTHER: [&str; 3] = ["energy", "center_x", "center_y"];
 
-struct Family<'a, const N: usize>(&'a SleighFamily<N>);
-
-/// Its basis holds everywhere.
-impl<const N: usize> ParametrisedMechanics<N, 1, BLOCK> for Family<'_, N> {
-    fn at(&self, _basis: u64, p: &[Seeded; BLOCK]) -> Box<dyn Gradients<N, 1> + '_> {
-        self.0.at(p)
-    }
-}
-
 /// The numbers of a run of a sleigh, with their derivatives in a block of keys.
 pub(super) fn rows(scene: &Scene, asked: &Asked<'_>, keys: &[String]) -> Result<SensitivityRows, Refusal> {
-    match scene.system().map_err(|error| refused(&error))? {
-        AnySystem::Sleigh(started) => of_shape(scene, &started, asked, keys),
-        AnySystem::Rotor(started) => of_shape(scene, &started, asked, keys),
-        _ => Err(imposed()),
-    }
-}
-
-fn imposed() -> Refusal {
-    refused(&"the scene imposes velocities (servo, tracer), and its runs have no derivatives")
-}
-
-fn of_shape<const N: usize>(
-    scene: &Scene,
-    Started { system, q, v }: &Started<N, 1>,
-    asked: &Asked<'_>,
-    keys: &[String],
-) -> Result<SensitivityRows, Refusal> {
-    let family = scene.family::<N>().map_err(|error| refused(&error))?.ok_or_else(imposed)?;
-    let start = keys.iter().map(|key| tangent(key, q, v)).collect::<Result<Vec<_>, _>>()?;
-    let rotor: &[&str] = if N > 3 { &OF_ROTOR } else { &[] };
+    let Started { system, q, v } = scene.system().map_err(|error| refused(&error))?;
+    let family = scene.family().map_err(|error| refused(&error))?.ok_or_else(imposed)?;
+    let member = system.member(&family).ok_or_else(imposed)?;
+    let start = keys.iter().map(|key| tangent(key, &q, &v)).collect::<Result<Vec<_>, _>>()?;
+    let rotor: &[&str] = if q.len() > 3 { &OF_ROTOR } else { &[] };
     let known: Vec<String> = COLUMNS.iter().chain(rotor).chain(&FURTHER).map(|name| (*name).to_owned()).collect();
     let usual = known.len() - FURTHER.len();
-    let told = |at: &Carried<N>| {
+    let told = |at: &Carried<'_>| {
         let Carried { q, v, p, .. } = at;
         let (sin, cos) = q[2].sin_cos();
         let mut told = vec![q[0], q[1], q[2], v[0] * cos + v[1] * sin, v[2]];
         told.extend(q.iter().zip(v).skip(3).flat_map(|(angle, rate)| [*angle, *rate]));
-        told.extend([at.energy(&*family.at(p)), q[0] + cos * p[2], q[1] + sin * p[2]]);
+        told.extend([at.energy(), q[0] + cos * p[2], q[1] + sin * p[2]]);
         told
     };
-    let motion = DifferentiatedMotion {
-        system: Built::Sleigh(&**system),
-        family: &Family(&family),
-        parameters: family.values(),
-        q: *q,
-        v: *v,
-    };
+    let motion = DifferentiatedMotion { system: Built::Sleigh(&*system), family: &*member, q, v };
     motion.rows(asked, start, (&known, usual), told)
+}
+
+fn imposed() -> Refusal {
+    refused(&"the scene imposes velocities (servo, tracer), and its runs have no derivatives")
 }
 
 /// Whether a key is the known one, in full or by its name.
@@ -76,7 +49,7 @@ pub(super) fn full_key(key: &str) -> Option<String> {
 }
 
 /// How the run begins in a key.
-fn tangent<const N: usize>(key: &str, q: &[f64; N], v: &[f64; N]) -> Result<Tangent<N, BLOCK>, Refusal> {
+fn tangent(key: &str, q: &[f64], v: &[f64]) -> Result<AnyTangent, Refusal> {
     if let Some(place) = PARAMETERS.iter().position(|known| is(known, key)) {
         return Ok(of_parameter(place));
     }
@@ -84,7 +57,7 @@ fn tangent<const N: usize>(key: &str, q: &[f64; N], v: &[f64; N]) -> Result<Tang
         return Err(no_key(key, &START.iter().chain(&PARAMETERS).copied().collect::<Vec<_>>().join(", ")));
     };
     let (sin, cos) = q[2].sin_cos();
-    let (mut dq, mut dv) = ([0.0; N], [0.0; N]);
+    let (mut dq, mut dv) = (vec![0.0; q.len()], vec![0.0; q.len()]);
     match place {
         // The velocity turns with the blade.
         2 => (dq[2], dv[0], dv[1]) = (1.0, -v[1], v[0]),

@@ -1,17 +1,8 @@
 use super::motion::{Carried, DifferentiatedMotion, of_parameter, of_start};
-use super::{Asked, BLOCK, SensitivityRows, no_key, refused};
+use super::{Asked, SensitivityRows, no_key, refused};
 use cli::Refusal;
-use harness::ParametrisedMechanics;
-use lagrangian::{Gradients, Seeded};
-use scene::{Built, Family, FamilySystem, TextModel, TextScene, Varied, Visitor};
-
-struct Shaped<const N: usize, const M: usize>(FamilySystem<N, M>);
-
-impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, BLOCK> for Shaped<N, M> {
-    fn at(&self, basis: u64, p: &[Seeded; BLOCK]) -> Box<dyn Gradients<N, M> + '_> {
-        self.0.at(basis, p)
-    }
-}
+use dla::AnyTangent;
+use scene::{Built, Family, TextModel, TextScene, Varied};
 
 /// The numbers of a run of a system of text, with their derivatives in a block of keys.
 pub(super) fn rows(scene: &TextScene, asked: &Asked<'_>, keys: &[String]) -> Result<SensitivityRows, Refusal> {
@@ -22,46 +13,28 @@ pub(super) fn rows(scene: &TextScene, asked: &Asked<'_>, keys: &[String]) -> Res
     let place = |name: &String| parameters.iter().position(|other| other == name).unwrap_or(0);
     let varied: Vec<Varied> =
         found.iter().map(|key| key.clone().unwrap_or_else(|name| Varied::Parameter(place(&name)))).collect();
-    let of = Of { scene, family: &family, varied: &varied, asked };
-    scene.visit(of).map_err(|error| refused(&error))?
-}
-
-/// What is asked of a scene, whatever its shape.
-struct Of<'a> {
-    scene: &'a TextScene,
-    family: &'a Family,
-    varied: &'a [Varied],
-    asked: &'a Asked<'a>,
-}
-
-impl Visitor for Of<'_> {
-    type Output = Result<SensitivityRows, Refusal>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let Self { scene, family, varied, asked } = self;
-        let n = scene.model.coordinates().len();
-        let Some(shaped) = family.shaped::<N, M>(0.0, &scene.start.q) else {
-            return Err(refused(&"the system has more coordinates than this program supports"));
-        };
-        let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
-        let start = varied.iter().map(|&varied| {
-            let (dq, dv) = family.start_along(&scene.start, varied);
-            let mut tangent = of_start(filled(&dq), filled(&dv));
-            if let Varied::Parameter(place) = varied {
-                tangent.parameters = of_parameter::<N>(place).parameters;
-            }
-            tangent
-        });
-        let told = |at: &Carried<N>| {
-            let mut told = [&at.q[..n], &at.v[..n]].concat();
-            told.push(at.energy(&*shaped.at(0, &at.p)));
-            told.extend(family.told(at.t, &at.q[..n], &at.v[..n], &at.p));
-            told
-        };
-        let family = &Shaped(shaped.clone());
-        let motion = DifferentiatedMotion { system, family, parameters: *self.family.values(), q, v };
-        motion.rows(asked, start.collect(), (&columns(&scene.model), 2 * n), told)
-    }
+    let built = scene.built_in(&family).map_err(|error| refused(&error))?;
+    let system = built.system();
+    let Some(member) = (if let Built::Text(text) = system { text.member() } else { None }) else {
+        return Err(refused(&"the system has more coordinates than this program supports"));
+    };
+    let n = scene.model.coordinates().len();
+    let start = varied.iter().map(|&varied| {
+        let (dq, dv) = family.start_along(&scene.start, varied);
+        match varied {
+            Varied::Parameter(place) => AnyTangent { q: dq, v: dv, ..of_parameter(place) },
+            _ => of_start(dq, dv),
+        }
+    });
+    let told = |at: &Carried<'_>| {
+        let mut told = [&at.q[..n], &at.v[..n]].concat();
+        told.push(at.energy());
+        told.extend(family.told(at.t, &at.q[..n], &at.v[..n], &at.p));
+        told
+    };
+    let (q, v) = (built.q.clone(), built.v.clone());
+    let motion = DifferentiatedMotion { system, family: &*member, q, v };
+    motion.rows(asked, start.collect(), (&columns(&scene.model), 2 * n), told)
 }
 
 /// Coordinates, rates, energy and outputs.
