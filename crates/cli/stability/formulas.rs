@@ -20,6 +20,7 @@ pub(super) struct Formulas<'a> {
     run: &'a Recorded,
     other: Option<&'a Recorded>,
     exact: Option<Exact>,
+    asks_exact: bool,
     method: &'a Method,
 }
 
@@ -46,6 +47,7 @@ impl<'a> Formulas<'a> {
             run,
             other,
             exact,
+            asks_exact: false,
             method,
         };
         for name in node().map(str::to_owned).chain(node().map(|name| format!("other_{name}"))) {
@@ -127,7 +129,9 @@ impl<'a> Formulas<'a> {
         built.map_err(|error| format!("`{text}`: {error}"))
     }
 
+    /// The operations of some formulas; the closed form is evaluated only for those that ask for it.
     fn tape(&mut self, texts: &[String]) -> Result<Tape, String> {
+        self.asks_exact = texts.iter().any(|text| text.contains("exact_"));
         let built = texts.iter().map(|text| self.built(text)).collect::<Result<Vec<_>, _>>()?;
         Tape::new(&self.graph, &built).map_err(|error| error.to_string())
     }
@@ -207,7 +211,7 @@ impl<'a> Formulas<'a> {
             let numbers = numbers.chain([seen.energy_error, seen.constraint]);
             self.values[place..place + width].iter_mut().zip(numbers).for_each(|(value, number)| *value = number);
         }
-        if let Some(exact) = &self.exact {
+        if let Some(exact) = self.exact.as_ref().filter(|_| self.asks_exact) {
             let now = exact.at(node.t);
             let place = 2 * width;
             self.values[place..place + EXACT.len()].copy_from_slice(&[

@@ -14,8 +14,7 @@ impl HardCase {
     /// Makes the runs of the case by the method, and judges them.
     pub(super) fn verdict(&'static self, cases: &'static Cases, method: &Method) -> Result<Verdict, CliError> {
         let case = self.case();
-        let runs = if self.runs.is_empty() { std::slice::from_ref(&self.shared) } else { &self.runs[..] };
-        let makers = runs.iter().filter(|run| makes(&run.methods, method));
+        let makers = self.runs.iter().filter(|run| makes(&run.methods, method));
         let trials: Result<Vec<_>, _> =
             makers.map(|run| Bench { shared: &self.shared, run, method }.trial(cases)).collect();
         let fault = |problem| CliError::Computation(vec![format!("the hard case {}: {problem}", case.name)]);
@@ -132,13 +131,14 @@ impl Bench<'_> {
 
 const NAMELESS: &str = "runs that go on, or fail without naming the constraints";
 
-/// Whether a run ends with an error of the second row, and how far from where that vanishes; nothing of a method for no such system.
+/// Whether a run ends with an error of the second row, and how far from where that vanishes; nothing of a method that lacks a basis there.
 fn dependent(run: &Recorded, off: f64, bar: f64) -> Vec<Finding> {
     let hint = run.failure.and_then(|failure| failure.hint());
-    if hint == Some(Hint::OtherMethod) {
+    let source = run.failure.map(|failure| failure.source);
+    if hint == Some(Hint::OtherMethod) || matches!(source, Some(StepError::LeavesBasis)) {
         return Vec::new();
     }
-    let named = match run.failure.map(|failure| failure.source) {
+    let named = match source {
         Some(StepError::Dependent(found)) => found.dependency == Dependency::RankDrops && found.rows.contains(1),
         _ => hint == Some(Hint::Constraints),
     };

@@ -76,13 +76,6 @@ impl<S: Scalar> Attitude<S> {
         mapped(&self.rotation(), |row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2])
     }
 
-    /// The components in the body, `R' x`, of a vector that has the components `x` in space.
-    #[must_use]
-    #[inline(always)]
-    pub fn in_body(&self, x: &[S; 3]) -> [S; 3] {
-        Self { e: [self.e[0], -self.e[1], -self.e[2], -self.e[3]] }.in_space(x)
-    }
-
     /// The rates `e'` of turns at 1 rad/s about the axes of the body. They are orthogonal to `e` and to one another, of length
     /// one half: a basis of the admissible rates.
     #[must_use]
@@ -103,13 +96,6 @@ impl<S: Scalar> Attitude<S> {
     #[inline(always)]
     pub fn space_velocity_matrix(&self) -> [[S; 4]; 3] {
         mapped(&space(&self.e), |row| mapped(&row, |part| part * 2.0))
-    }
-
-    /// The matrix, by rows, that takes rates `e'` to the angular velocity in the body (rad/s).
-    #[must_use]
-    #[inline(always)]
-    pub fn body_velocity_matrix(&self) -> [[S; 4]; 3] {
-        mapped(&body(&self.e), |row| mapped(&row, |part| part * 2.0))
     }
 
     /// The angular velocity `Omega` in the body (rad/s), of the rates `e'`.
@@ -138,26 +124,6 @@ impl<S: Scalar> Attitude<S> {
     #[inline(always)]
     pub fn rates_of_space(&self, omega: &[S; 3]) -> [S; 4] {
         combined(&self.space_turns(), omega)
-    }
-
-    /// The second derivatives `e'' = e Omega' / 2 + e' Omega / 2`, of the rates `e'` and the angular acceleration `Omega'` in the
-    /// body (rad/s^2).
-    #[must_use]
-    #[inline(always)]
-    pub fn accelerations_of_body(&self, rates: &[S; 4], omega: &[S; 3]) -> [S; 4] {
-        let (turned, carried) =
-            (self.rates_of_body(omega), Self::new(*rates).rates_of_body(&self.body_velocity(rates)));
-        from_fn(|i| turned[i] + carried[i])
-    }
-
-    /// The second derivatives `e'' = omega' e / 2 + omega e' / 2`, of the rates `e'` and the angular acceleration `omega'` in space
-    /// (rad/s^2).
-    #[must_use]
-    #[inline(always)]
-    pub fn accelerations_of_space(&self, rates: &[S; 4], omega: &[S; 3]) -> [S; 4] {
-        let (turned, carried) =
-            (self.rates_of_space(omega), Self::new(*rates).rates_of_space(&self.space_velocity(rates)));
-        from_fn(|i| turned[i] + carried[i])
     }
 
     /// The kinetic energy of the turn (J), of the rates `e'`, the angular velocity `Omega` in the body (rad/s) and the principal

@@ -111,32 +111,3 @@ fn a_force_with_a_corner() {
     assert!(Trial::new("", &sound).broken.is_none());
     assert!(Trial::new("", &run(|u| u / u.abs())).broken.unwrap().contains("not a finite number"));
 }
-
-/// A great circle that passes a pole at 1e-2 rad: turned in space, and in angles by steps that are much longer than the passage.
-#[test]
-fn the_end_of_a_chart() {
-    let (h, nearest) = (0.01, 1e-2f64);
-    let place = |t: f64| [t.cos(), t.sin() * nearest.sin(), t.sin() * nearest.cos()];
-    let turned = recorded([1.0, 0.0, 0.0, 0.0, 0.0, 0.0], schedule(h, 3.1), |t, q| {
-        q[..3].copy_from_slice(&place(t + h));
-    });
-    let mut angles = [FRAC_PI_2, 0.0, -nearest.cos(), nearest.sin()];
-    let rates = |[polar, _, down, east]: [f64; 4]| {
-        let (sin, cos) = polar.sin_cos();
-        [down, east, sin * cos * east * east, -2.0 * cos / sin * down * east]
-    };
-    let charted = energetic(
-        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        schedule(h, 3.1),
-        |_| 0.0,
-        |_, q| {
-            let first = rates(angles);
-            let middle = rates([0, 1, 2, 3].map(|i| angles[i] + 0.5 * h * first[i]));
-            angles = [0, 1, 2, 3].map(|i| angles[i] + h * middle[i]);
-            let [polar, longitude, ..] = angles;
-            q[..3].copy_from_slice(&[polar.sin() * longitude.cos(), polar.sin() * longitude.sin(), polar.cos()]);
-        },
-    );
-    let found = |run: &Recorded| follows(run, [0, 1, 2], place, 0.1);
-    control("chart-end", found(&turned), found(&charted));
-}
