@@ -6,8 +6,8 @@ use crate::steady::{self, Searched, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
 use dla::{Schedule, State, Trajectory};
 use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, differentiable, relative_equilibria_within};
-use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
+use report::{Chart, Layer, chart_svg};
 use scene::{AnyScene, Built, SceneSystem, Visitor};
 use sleigh::Sleigh;
 
@@ -48,7 +48,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
     notes::moves(&scene);
     let found = scene.visit(Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() })??;
     if let Some(path) = &arguments.picture {
-        let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
+        let picture = chart_svg(&portrait(&scene, &found));
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
     }
     let (step, rows, searched) = (scene.run().actual_step(), found.rows, found.searched);

@@ -8,7 +8,7 @@ use crate::progress::Interruptible;
 use crate::{inspect, json, notes, progress, stability_map, table, terminal};
 use harness::Method;
 use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
-use harness::report::{Chart, Layer};
+use report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, MAX_STEPS, Visitor};
 use serde_json::{Value, json};
 

@@ -13,7 +13,6 @@
 mod allocation;
 mod common;
 mod geometry;
-mod report;
 mod runs;
 mod stability;
 mod step;

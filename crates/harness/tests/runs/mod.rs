@@ -2,7 +2,6 @@
 
 mod baselines;
 mod chaos;
-mod charts;
 mod diverged;
 mod drift;
 mod ensembles;
