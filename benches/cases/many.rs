@@ -1,6 +1,6 @@
 use super::Case;
 use super::systems::{from, sleigh};
-use harness::report::{Report, SceneReport, Series, write};
+use report::{Report, SceneReport, Series, write};
 use sleigh::{ClosedMap, SleighState};
 use std::thread;
 
@@ -23,7 +23,7 @@ pub(super) fn cases() -> Vec<Case> {
         Case::new(REPORT, "a page of two methods with 2000 nodes", |times| {
             for _ in 0..times {
                 let folder = tempfile::tempdir().expect("a temporary folder");
-                write(&report(), folder.path(), true).expect("a writable folder");
+                write(&report(), folder.path()).expect("a writable folder");
             }
         }),
     ]

@@ -3,7 +3,7 @@ use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::provenance::{Provenance, label, metadata_of};
-use harness::report::{Chart, chart_svg};
+use report::{Chart, chart_svg};
 use scene::Column;
 use std::io::Write;
 use std::path::Path;
@@ -52,10 +52,7 @@ impl<'a> ChartFile<'a> {
                 })?;
                 provenance.write_beside(path, columns)
             }
-            Self::Svg(path) => {
-                let text = chart_svg(&chart()).map_err(CliError::Report)?;
-                write_whole(path, overwrite, |file| file.write_all(text.as_bytes()))
-            }
+            Self::Svg(path) => write_whole(path, overwrite, |file| file.write_all(chart_svg(&chart()).as_bytes())),
         }
     }
 }

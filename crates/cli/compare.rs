@@ -8,8 +8,8 @@ use crate::saves::Saves;
 use crate::table::ComparisonRow;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{AnyState, Schedule};
-use harness::report::{self, HEADINGS, Report, SceneReport, Series};
 use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request};
+use report::{HEADINGS, Report, SceneReport, Series};
 use scene::{AnyScene, Built};
 use sleigh::Exact;
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
             scenes: vec![std::mem::take(&mut comparison.report)],
             ..Report::default()
         };
-        report::write(&report, folder.path(), true).map_err(CliError::Report)?;
+        report::write(&report, folder.path()).map_err(CliError::Report)?;
     }
     if arguments.scene.json {
         let rows: Vec<_> = comparison.rows.iter().map(|row| &row.json).collect();
@@ -185,13 +185,13 @@ impl Compare<'_> {
             rows: rows.iter().map(|row| row.cells.clone()).collect(),
             series,
             exact_path,
-            figure: None,
             numbers: compare_numbers::files(
                 name,
                 (self.scene.title(), self.scene.to_toml().ok()),
                 &objects,
                 interrupted.as_deref(),
             ),
+            ..SceneReport::default()
         };
         Ok(Comparison { rows, report, interrupted })
     }

@@ -2,7 +2,7 @@
 
 use crate::csv_text::quoted;
 use crate::provenance::{DescribedColumn, Provenance};
-use harness::report::{Numbers, file_stem};
+use report::{Numbers, file_stem};
 use serde_json::{Value, json};
 
 /// A column of the CSV file, where the JSON row has its field, and the type of the field.

@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::table::{self, ComparisonRow};
 use crate::terminal;
 use harness::Drift;
-use harness::report::SceneReport;
+use report::SceneReport;
 use scene::AnyScene;
 
 /// A comparison of more steps, of a train times its coordinates, has no computed reference, which would take longer than all of it.

@@ -6,8 +6,8 @@ use crate::steady::{self, Searched, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
 use dla::{Schedule, Trajectory};
 use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, has_map, relative_equilibria};
-use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
+use report::{Chart, Layer, chart_svg};
 use scene::{AnyScene, Built, SceneSystem};
 use sleigh::Sleigh;
 
@@ -50,7 +50,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
     let find = Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() };
     let found = find.on(&built.system(), (&built.q, &built.v))?;
     if let Some(path) = &arguments.picture {
-        let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
+        let picture = chart_svg(&portrait(&scene, &found));
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
     }
     let (step, rows, searched) = (scene.run().actual_step(), found.rows, found.searched);

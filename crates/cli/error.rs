@@ -1,6 +1,7 @@
 use dla::{CheckpointError, RecommendError};
+use harness::MethodError;
 use harness::analysis::EquilibriumError;
-use harness::{MethodError, report::ReportError};
+use report::ReportError;
 use scene::SceneError;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -107,7 +108,7 @@ impl CliError {
             Self::ChartEnding { .. } | Self::Request(_) | Self::Memory(_) => 2,
             Self::Busy { .. } | Self::Read { .. } | Self::Checkpoint { .. } => 2,
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
-            Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,
+            Self::Points { .. } => 2,
             // That a search ends without any is no fault of the request.
             Self::Equilibria(
                 EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_) | EquilibriumError::NotFinite,

@@ -6,7 +6,7 @@ use crate::saves::Saves;
 use crate::table::ComparisonRow;
 use crate::totals::Totals;
 use crate::{table, terminal};
-use harness::report::{self, Report};
+use report::Report;
 use scene::AnyScene;
 use std::path::Path;
 
@@ -34,7 +34,7 @@ pub(crate) fn everything(folder: &Path) -> Result<(), CliError> {
     terminal::print(&totals.table(scenes.len()))?;
     let title = "What accuracy costs, and what structure keeps".to_owned();
     let report = Report { title, intro: table::INTRO.to_owned(), scenes, ..Report::default() };
-    report::write(&report, folder, true).map_err(CliError::Report)?;
+    report::write(&report, folder).map_err(CliError::Report)?;
     terminal::print(&format!("\nreport: {}\n", folder.join("index.html").display()))?;
     unless_interrupted(interrupted, None, CliError::of_failures(failures))
 }

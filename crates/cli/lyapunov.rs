@@ -9,7 +9,7 @@ use crate::{inspect, json, notes, progress, stability_map, table, terminal};
 use dla::has_tangents;
 use harness::Method;
 use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, kaplan_yorke};
-use harness::report::{Chart, Layer};
+use report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, MAX_STEPS};
 use serde_json::{Value, json};
 

@@ -5,8 +5,8 @@ use crate::files::{check_file, write_whole};
 use crate::{inspect, progress, table, terminal};
 use dla::{Mechanism, RunError, Schedule};
 use harness::analysis::{Rounds, weighted_mean};
-use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_on};
+use report::{Chart, Layer, chart_svg};
 use scene::{MAX_STEPS, PathShape, PathSpec, RunSettings, Scene, SceneEffect, Started};
 use serde_json::{Value, json};
 use sleigh::ClosedPath;
@@ -73,7 +73,7 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
         measured.curvature = Some(-at_zero(&ratios));
     }
     if let Some(file) = &arguments.picture {
-        let picture = chart_svg(&circle_map(&scene, &measured)).map_err(CliError::Report)?;
+        let picture = chart_svg(&circle_map(&scene, &measured));
         write_whole(file, arguments.scene.force, |out| std::io::Write::write_all(out, picture.as_bytes()))?;
     }
     if arguments.scene.json {

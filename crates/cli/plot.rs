@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::in_memory::{self, RunRequest};
 use crate::{files, inspect, table, terminal};
-use harness::report::{Figure, FigureFormat, MOST_PIXELS, Panel, Paper, figure};
+use report::{FigureFormat, MOST_PIXELS, Panel, Paper, Sheet, sheet};
 use scene::AnyScene;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
         None => input.clone(),
     };
     let drawn = drawing(title, &runs, columns.as_deref())?;
-    let bytes = figure(&drawn, &paper, format).map_err(CliError::Report)?;
+    let bytes = sheet(&drawn, &paper, format).map_err(CliError::Report)?;
     files::write_whole(&out, *force, |file| file.write_all(&bytes))?;
     terminal::print(&format!("picture: {}\n", out.display()))?;
     CliError::of_failures(failures)
@@ -136,12 +136,12 @@ fn run(
     Ok((method.to_owned(), columns.collect()))
 }
 
-/// The figure of some runs; of columns that are not named, what a reader looks at first.
+/// The sheet of some runs; of columns that are not named, what a reader looks at first.
 pub(crate) fn drawing(
     title: String,
     runs: &[(String, Columns)],
     columns: Option<&[String]>,
-) -> Result<Figure, CliError> {
+) -> Result<Sheet, CliError> {
     let first = runs.first().map_or(&[][..], |(_, columns)| &columns[..]);
     let has = |name: &str| first.iter().any(|column| column.name == name);
     let path = has("x") && has("y");
@@ -164,7 +164,7 @@ pub(crate) fn drawing(
         return Err(CliError::Request(problem));
     }
     let panels = names.iter().map(|name| panel(name, runs)).collect();
-    Ok(Figure { title, runs: runs.iter().map(|(name, _)| name.clone()).collect(), panels })
+    Ok(Sheet { title, runs: runs.iter().map(|(name, _)| name.clone()).collect(), panels })
 }
 
 fn panel(name: &str, runs: &[(String, Columns)]) -> Panel {

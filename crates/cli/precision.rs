@@ -14,7 +14,6 @@ use harness::Method;
 use harness::precision::{
     Bench, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
 };
-use harness::report::write_precision;
 use scene::{AnyScene, Built};
 use serde_json::json;
 use std::path::PathBuf;
@@ -71,7 +70,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     }
     if let Some(folder) = &folder {
         let report = precision_text::report(&scene, &measured, &provenance);
-        write_precision(&report, folder.path(), true).map_err(CliError::Report)?;
+        report::write(&report, folder.path()).map_err(CliError::Report)?;
     }
     if arguments.json {
         terminal::print_json(&precision_text::json(&scene, &measured))?;

@@ -6,7 +6,7 @@ use crate::precision_csv::{self, points, settings};
 use crate::provenance::Provenance;
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, seconds_to};
-use harness::report::{Numbers, PrecisionReport, PrecisionTable, file_stem};
+use report::{CostCurve, CostPoint, Numbers, Report, SceneReport, Table, file_stem};
 use scene::AnyScene;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -213,14 +213,34 @@ fn json_method(curve: &Curve) -> Value {
     object
 }
 
+/// What the diagrams show of a method.
+fn drawn(curve: &Curve) -> CostCurve {
+    let label = curve.label();
+    let point = |point: &PrecisionPoint| {
+        let [error, seconds] = point.measured()?;
+        let step = match point.setting {
+            Some(RungSetting::Step(step)) if step > 0.0 => Some(step),
+            _ => None,
+        };
+        let numbers =
+            [("error", point.error, ""), ("wall", point.wall_seconds, " s"), ("CPU", point.cpu_seconds, " s")];
+        let numbers = numbers.into_iter().filter_map(|(name, x, unit)| Some(format!("{name} {}{unit}", number(x?))));
+        let [setting, mark] = [point.setting.map(|x| x.to_string()), point.mark.as_ref().map(ToString::to_string)];
+        let text: Vec<String> = [label.clone()].into_iter().chain(setting).chain(numbers).chain(mark).collect();
+        let plateau = point.mark == Some(Mark::Plateau);
+        Some(CostPoint { error, seconds, step, plateau, pareto: point.pareto, text: text.join(", ") })
+    };
+    CostCurve { points: curve.points.iter().filter_map(point).collect(), label }
+}
+
 /// The report.
-pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Provenance) -> PrecisionReport {
+pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Provenance) -> Report {
     let mut facts = measured.facts.clone();
     let duration = format!("{} s", number(measured.duration));
     for (name, value) in [("duration", duration), ("reference", reference(measured)), ("times", clock(measured))] {
         facts.push((name.to_owned(), value));
     }
-    let table = |title: &str, columns: &[&str], rows: Vec<(Vec<String>, String)>| PrecisionTable {
+    let table = |title: &str, columns: &[&str], rows: Vec<(Vec<String>, String)>| Table {
         title: title.to_owned(),
         columns: columns.iter().map(|column| (*column).to_owned()).chain([String::new()]).collect(),
         rows: rows
@@ -233,21 +253,26 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Prov
     };
     let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
     let csv = format!("{}.csv", file_stem(scene.name()));
-    PrecisionReport {
-        title: format!("noslip precision {}", scene.name()),
-        intro: format!("{INTRO}\n\n{}", verdicts(&measured.curves)),
+    let shown = SceneReport {
         name: scene.name().to_owned(),
-        heading: scene.title().to_owned(),
+        title: scene.title().to_owned(),
         facts,
-        curves: measured.curves.clone(),
-        tables: vec![
-            table("Time to an error", &METHODS, measured.curves.iter().map(summary).collect()),
-            table("Every point", &POINTS, rows),
-        ],
+        costs: measured.curves.iter().map(drawn).collect(),
         numbers: vec![
             Numbers { ending: "csv", text: precision_csv::text(&measured.curves) },
             Numbers { ending: "csv-metadata.json", text: provenance.document(&csv, precision_csv::described()) },
             Numbers { ending: "json", text: format!("{:#}\n", json(scene, measured)) },
         ],
+        ..SceneReport::default()
+    };
+    Report {
+        title: format!("noslip precision {}", scene.name()),
+        intro: format!("{INTRO}\n\n{}", verdicts(&measured.curves)),
+        scenes: vec![shown],
+        tables: vec![
+            table("Time to an error", &METHODS, measured.curves.iter().map(summary).collect()),
+            table("Every point", &POINTS, rows),
+        ],
+        ..Report::default()
     }
 }

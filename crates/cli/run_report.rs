@@ -5,7 +5,7 @@ use crate::columns_file::{Columns, NamedColumn};
 use crate::error::CliError;
 use crate::files::ClaimedFolder;
 use crate::{facts, inspect, plot, table, terminal, train};
-use harness::report::{self, HEADINGS, Report, SceneReport, Series};
+use report::{HEADINGS, Report, SceneReport, Series};
 use scene::AnyScene;
 
 /// Makes the run, and its page where one is asked for. For the page it is made a second time, with fewer nodes kept.
@@ -52,11 +52,11 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
         series: vec![series],
         exact_path,
         figure: Some(figure),
-        numbers: Vec::new(),
+        ..SceneReport::default()
     };
     let title = format!("noslip run {} with {method}", scene.name());
     let report = Report { title, scenes: vec![shown], ..Report::default() };
-    report::write(&report, folder.path(), true).map_err(CliError::Report)?;
+    report::write(&report, folder.path()).map_err(CliError::Report)?;
     if !shared.json {
         terminal::print(&format!("report: {}\n", folder.path().join("index.html").display()))?;
     }

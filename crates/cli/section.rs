@@ -13,7 +13,7 @@ use crate::{inspect, json, notes, progress, table, terminal};
 use dla::{Close, Event, RunError};
 use harness::Method;
 use harness::analysis::in_parallel;
-use harness::report::{Chart, Layer};
+use report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, Quantity, StartPlace};
 use serde_json::{Value, json};
 

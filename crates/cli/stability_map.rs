@@ -10,7 +10,7 @@ use crate::starts::with_energy;
 use crate::{progress, table, terminal};
 use harness::Method;
 use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov};
-use harness::report::{Cells, Chart, Layer};
+use report::{Cells, Chart, Layer};
 use scene::{AnyScene, Built, Column};
 use serde_json::{Value, json};
 

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --example circles [FOLDER]`; the folder receives the two pictures.
 
-use harness::report::{Chart, Layer, SceneReport, Series, chart_svg, path_picture};
 use noslip::{Dla, Exact, RunError, Schedule, Sleigh, SleighState, State, System, Trajectory, drive};
+use report::{Chart, Layer, SceneReport, Series, chart_svg, path_picture};
 use std::fs;
 use std::path::Path;
 
@@ -68,8 +68,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let scene =
             SceneReport { name: "circles".to_owned(), title: "Paths".to_owned(), series, ..SceneReport::default() };
         fs::create_dir(&folder)?;
-        fs::write(Path::new(&folder).join("circles-curvature.svg"), chart_svg(&chart)?)?;
-        fs::write(Path::new(&folder).join("circles-path.svg"), path_picture(&scene)?)?;
+        fs::write(Path::new(&folder).join("circles-curvature.svg"), chart_svg(&chart))?;
+        fs::write(Path::new(&folder).join("circles-path.svg"), path_picture(&scene))?;
         println!("written: {folder}");
     }
     Ok(())

@@ -20,8 +20,8 @@ mod program;
 #[path = "hard_cases/systems.rs"]
 mod systems;
 
-use harness::report::{Chart, chart_svg};
 use program::Program;
+use report::{Chart, chart_svg};
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&folder)?;
     for (case, draw) in PICTURES {
         let chart = draw(&program).map_err(|error| format!("{case}: {error}"))?;
-        fs::write(folder.join(format!("stability-{case}.svg")), chart_svg(&chart)?)?;
+        fs::write(folder.join(format!("stability-{case}.svg")), chart_svg(&chart))?;
         println!("{case}: {}", chart.title);
     }
     Ok(())

@@ -2,7 +2,6 @@
 //!
 //! `cargo run --example naive_methods [FOLDER]`; the folder receives a report with the pictures.
 
-use harness::report::{self, Report, SceneReport, Series};
 use harness::{Rk4, Rk4Projected};
 use noslip::dla::{Composition, onto_constraint};
 use noslip::sleigh::effects::Bowl;
@@ -10,6 +9,7 @@ use noslip::{
     Dla, OneStep, Schedule, Sleigh, SleighError, SleighState, State, StepError, StepReport, System, Trajectory, With,
     drive,
 };
+use report::{Report, SceneReport, Series};
 use std::path::Path;
 
 /// Explicit Euler on the equations of motion with the multiplier eliminated: no method of the library, but a [`OneStep`].
@@ -133,7 +133,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     if let Some(folder) = std::env::args().nth(1) {
         let title = "Naive methods beside the discrete principle".to_owned();
-        report::write(&Report { title, scenes, ..Report::default() }, Path::new(&folder), false)?;
+        std::fs::create_dir(&folder)?;
+        report::write(&Report { title, scenes, ..Report::default() }, Path::new(&folder))?;
         println!("written: {folder}");
     }
     Ok(())

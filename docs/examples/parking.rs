@@ -3,8 +3,8 @@
 //! `cargo run --example parking [FILE.svg]`; without a file only the plan is printed.
 
 use dla::{Dla, Piece, Schedule, State, Trajectory, drive_part, piece_by_piece};
-use harness::report::{SceneReport, Series, path_picture};
 use lagrangian::System;
+use report::{SceneReport, Series, path_picture};
 use sleigh::parking::{Gap, Move, ParkingPlan};
 use sleigh::{Guided, Sleigh, SleighState};
 use std::error::Error;
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             series: vec![series],
             ..SceneReport::default()
         };
-        std::fs::File::create_new(&file)?.write_all(path_picture(&scene)?.as_bytes())?;
+        std::fs::File::create_new(&file)?.write_all(path_picture(&scene).as_bytes())?;
         println!("written: {file}");
     }
     Ok(())

@@ -13,7 +13,7 @@ use crate::saves::Saves;
 use crate::table::ComparisonRow;
 use crate::{job, precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
-use harness::report::{self, Report};
+use report::Report;
 use scene::AnyScene;
 use words::Answers;
 
@@ -70,8 +70,8 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     report.rows = cells;
     let intro = [vec![heading], sentences].concat().join("\n\n");
     let title = "Five methods on one motion".to_owned();
-    let report = Report { title, intro, notes: words::notes(), scenes: vec![report] };
-    report::write(&report, folder.path(), true).map_err(CliError::Report)?;
+    let report = Report { title, intro, notes: words::notes(), scenes: vec![report], ..Report::default() };
+    report::write(&report, folder.path()).map_err(CliError::Report)?;
     terminal::print(&format!("\npage: {}\n\n{}", folder.path().join("index.html").display(), words::FURTHER))?;
     let failed = CliError::of_failures(rows.into_iter().filter_map(ComparisonRow::unexpected));
     unless_interrupted(interrupted, None, failed)

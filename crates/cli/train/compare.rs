@@ -9,8 +9,8 @@ use crate::{compare_numbers, facts, json, notes, progress, table};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::Schedule;
-use harness::report::{SceneReport, Series};
 use harness::{Assembled, AssemblyNode, Drift, DriftVerdict, Method, assembly_end, run_assembly};
+use report::{SceneReport, Series};
 use scene::Scene;
 use sleigh::SleighState;
 
@@ -84,14 +84,13 @@ pub(crate) fn compare_scene(
         columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
         rows: rows.iter().map(|row| row.cells.clone()).collect(),
         series,
-        exact_path: None,
-        figure: None,
         numbers: compare_numbers::files(
             &scene.name,
             (&scene.title, scene.to_toml().ok()),
             &objects,
             interrupted.as_deref(),
         ),
+        ..SceneReport::default()
     };
     Ok(Comparison { rows, report, interrupted })
 }

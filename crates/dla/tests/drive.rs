@@ -2,8 +2,8 @@
 
 use crate::support::One;
 use dla::{
-    Dla, History, Mechanics, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError,
-    StepReport, Trajectory, View, drive,
+    AnyState, Dla, History, Mechanics, NewtonError, Node, Observer, OneStep, Report, RunError, Schedule, Stage, State,
+    StepError, StepReport, Subject, Trajectory, View, drive,
 };
 use lagrangian::{Constraint, Scalar, System};
 use std::ops::ControlFlow;
@@ -66,15 +66,15 @@ struct Log {
     stop_at: Option<u64>,
 }
 
-impl Observer<1, 1> for Log {
-    fn start(&mut self, node: &View<'_, 1, 1>) {
+impl Observer for Log {
+    fn start(&mut self, node: &View<'_>) {
         self.events.push(Start(node.k, node.t, node.state.q()[0]));
     }
-    fn step(&mut self, node: &View<'_, 1, 1>, report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         self.events.push(Step(node.k, node.t, node.state.q()[0], report.iterations));
         if self.stop_at == Some(node.k) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
-    fn end(&mut self, node: &View<'_, 1, 1>) {
+    fn end(&mut self, node: &View<'_>) {
         self.events.push(End(node.k, node.t, node.state.q()[0]));
     }
 }
@@ -145,7 +145,7 @@ fn a_failure_keeps_state_and_trajectory() {
 #[test]
 fn a_trajectory_keeps_every_nth_node_and_the_last() {
     let kept = |every: u64, steps: u64| {
-        let mut trajectory = Trajectory::<1, 1>::every(every);
+        let mut trajectory = Trajectory::every(every);
         let schedule = Schedule { steps, ..SCHEDULE };
         drive(&One::from(Line), &mut Counting::default(), &schedule, &mut start(), &mut trajectory).unwrap();
         trajectory.nodes().iter().map(|node| node.k).collect::<Vec<_>>()
@@ -164,21 +164,21 @@ fn a_node_has_what_its_step_reported() {
     drive(&One::from(Line), &mut Counting::default(), &SCHEDULE, &mut start(), &mut trajectory).unwrap();
     // The work is integrated along the nodes, and these are not those of a motion.
     let works: Vec<f64> = trajectory.nodes().iter().map(|node| node.work).collect();
-    let node = |k: u64, multipliers: Option<[f64; 1]>| {
+    let node = |k: u64, multipliers: Option<Vec<f64>>| {
         let t = 0.5 * k as f64;
         let v = (1.0 + t).recip();
         let work = works[k.div_ceil(2) as usize];
-        Node { k, t, q: [k as f64], v: [v], energy: 0.5 * v * v, work, constraint: 0.0, multipliers }
+        Node { k, t, q: vec![k as f64], v: vec![v], energy: 0.5 * v * v, work, constraint: 0.0, multipliers }
     };
     // The impulses of step k sum up to k, over h = 1/2.
-    assert_eq!(trajectory.nodes(), [node(0, None), node(2, Some([4.0])), node(3, Some([6.0]))]);
+    assert_eq!(trajectory.nodes(), [node(0, None), node(2, Some(vec![4.0])), node(3, Some(vec![6.0]))]);
 }
 
 #[test]
 fn a_residual_that_is_no_number_is_seen() {
     let view = |v: f64| {
-        let state = State::new([0.0], [v], [false]);
-        View { system: &One::from(Line), k: 0, t: 0.0, state: &state }.constraint()
+        let state = AnyState::from(State::new([0.0], [v], [false]));
+        View { system: &Subject::from(&One::from(Line)), k: 0, t: 0.0, state: &state }.constraint()
     };
     assert_eq!((view(1.0), view(0.5), view(2.0)), (0.0, 0.5, 1.0));
     assert!(view(f64::NAN).is_nan());

@@ -1,4 +1,4 @@
-//! The comparison harness: baselines, long-run drift, work against precision, and the reports that show them.
+//! The comparison harness: baselines, long-run drift, and work against precision.
 //!
 //! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`];
 //! [`precision::work_precision`] measures what accuracy costs in time; [`analysis`] asks whether a motion is chaotic.
@@ -10,7 +10,6 @@ mod drift;
 pub mod ensemble;
 pub mod precision;
 mod record;
-pub mod report;
 mod run;
 mod saved;
 mod sensitivities;

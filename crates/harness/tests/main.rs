@@ -14,7 +14,6 @@ mod allocation;
 mod common;
 mod geometry;
 mod parts;
-mod report;
 mod runs;
 mod stability;
 mod step;

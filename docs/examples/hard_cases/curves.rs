@@ -1,7 +1,7 @@
 //! Curves of a chart, from the nodes of runs.
 
-use harness::report::{Chart, Layer};
 use harness::stability::Seen;
+use report::{Chart, Layer};
 
 pub(crate) const X: usize = 0;
 pub(crate) const Y: usize = 1;

@@ -4,8 +4,8 @@ use crate::curves::Upright::{Decades, Linear};
 use crate::curves::{SPEED, SPIN, curve, in_time, markers, peaks, trace};
 use crate::free::exact;
 use crate::program::{Program, Setup};
-use harness::report::Chart;
 use harness::stability::Seen;
+use report::Chart;
 use std::error::Error;
 
 type Drawn = Result<Chart, Box<dyn Error>>;

@@ -4,8 +4,8 @@ use crate::broken::{self, BODY, Broken, straight};
 use crate::curves::Upright::{Decades, Linear};
 use crate::curves::{SPIN, X, Y, chart, curve, in_time, markers, peaks, trace};
 use crate::program::{Program, Setup};
-use harness::report::{Chart, Layer};
 use harness::stability::Seen;
+use report::{Chart, Layer};
 use sleigh::{Exact, Sleigh, SleighState};
 use std::error::Error;
 

@@ -5,8 +5,8 @@ use crate::curves::Upright::{Decades, Linear};
 use crate::curves::{SPEED, SPIN, X, Y, chart, curve, in_time, level, markers, peaks, upper_edge};
 use crate::free::exact;
 use crate::program::{Program, Setup};
-use harness::report::Chart;
 use harness::stability::Seen;
+use report::Chart;
 use std::error::Error;
 use std::f64::consts::TAU;
 

@@ -5,7 +5,6 @@ use crate::curves::{curve, in_time, level, markers, upper_edge};
 use crate::program::Program;
 use dla::{Dla, Energy, Node, OneStep, Schedule, State, Trajectory, drive};
 use harness::Rk4Reduced;
-use harness::report::Chart;
 use lagrangian::System;
 use sleigh::{Exact, Sleigh, SleighState};
 use std::error::Error;

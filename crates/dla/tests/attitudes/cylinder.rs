@@ -78,9 +78,9 @@ fn errors<Method: OneStep<6, 3>>(mut method: Method, from: &Attitude<f64>, (a_ro
     let step = std::f64::consts::TAU / RATE / a_round as f64;
     let frequency = RATE * (RATIO / (1.0 + RATIO)).sqrt();
     let middle = -(GRAVITY + RATIO * RADIUS * RATE * SPIN) / (1.0 + RATIO) / frequency.powi(2);
-    let (found, end) = largest(&Six::from(Ball), &mut method, start(from), (step, steps), |node: &View<'_, 6, 3>| {
+    let (found, end) = largest(&Six::from(Ball), &mut method, start(from), (step, steps), |node: &View<'_>| {
         let height = middle * (1.0 - (frequency * node.t).cos());
-        let (q, miss) = (node.state.q(), attitude(node.state.q()).norm_miss());
+        let (q, miss) = (node.state.q(), attitude(node.state.typed().unwrap().q()).norm_miss());
         [(q[1] - height).abs(), miss.abs(), node.constraint()]
     });
     end.unwrap();

@@ -17,7 +17,7 @@ fn off<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>
     mut method: Method,
     steps: u64,
 ) -> f64 {
-    let ([off], end) = largest(system, &mut method, *start, (0.05, steps), |node: &View<'_, N, M>| {
+    let ([off], end) = largest(system, &mut method, *start, (0.05, steps), |node: &View<'_>| {
         let q = node.state.q();
         [Attitude::new([q[N - 4], q[N - 3], q[N - 2], q[N - 1]]).norm_miss().abs()]
     });

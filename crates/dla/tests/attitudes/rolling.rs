@@ -22,18 +22,17 @@ struct Roll {
     time: f64,
 }
 
-fn errors<Sys, Method, const N: usize, const M: usize>(
+fn errors<Sys, const N: usize, const M: usize>(
     system: &Sys,
-    method: &mut Method,
+    method: &mut dyn OneStep<N, M>,
     start: Place<N>,
     Roll { omega, step, time }: Roll,
 ) -> (Errors, Option<RunError>)
 where
     Sys: System<N, M>,
-    Method: OneStep<N, M> + ?Sized,
 {
     let energy = lagrangian::energy(system, 0.0, &start.0, &start.1);
-    let (found, end) = largest(system, method, start, (step, (time / step).round() as u64), |node: &View<'_, N, M>| {
+    let (found, end) = largest(system, method, start, (step, (time / step).round() as u64), |node: &View<'_>| {
         let q = node.state.unwrapped();
         let off = (q[0] - start.0[0] - omega[1] * node.t).abs().max((q[1] - start.0[1] + omega[0] * node.t).abs());
         [off, (node.energy() / energy - 1.0).abs(), node.constraint()]

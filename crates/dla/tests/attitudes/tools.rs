@@ -1,6 +1,6 @@
 //! Runs, and what is measured along them.
 
-use dla::{Observer, OneStep, RunError, Schedule, State, StepReport, View, drive};
+use dla::{Observer, OneStep, Report, RunError, Schedule, State, View, drive};
 use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -14,14 +14,14 @@ struct Largest<F, const K: usize> {
     of: F,
 }
 
-impl<F, const N: usize, const M: usize, const K: usize> Observer<N, M> for Largest<F, K>
+impl<F, const K: usize> Observer for Largest<F, K>
 where
-    F: FnMut(&View<'_, N, M>) -> [f64; K],
+    F: FnMut(&View<'_>) -> [f64; K],
 {
-    fn start(&mut self, node: &View<'_, N, M>) {
+    fn start(&mut self, node: &View<'_>) {
         self.values = (self.of)(node);
     }
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         let now = (self.of)(node);
         // What is not a number wins.
         self.values = std::array::from_fn(|k| larger(self.values[k], now[k]));
@@ -30,17 +30,16 @@ where
 }
 
 /// The largest values of some quantities over a run of so many steps of that length, and how it ends.
-pub fn largest<Sys, Method, F, const N: usize, const M: usize, const K: usize>(
+pub fn largest<Sys, F, const N: usize, const M: usize, const K: usize>(
     system: &Sys,
-    method: &mut Method,
+    method: &mut dyn OneStep<N, M>,
     (q, v): Place<N>,
     (step, steps): (f64, u64),
     of: F,
 ) -> ([f64; K], Result<State<N>, RunError>)
 where
     Sys: System<N, M>,
-    Method: OneStep<N, M> + ?Sized,
-    F: FnMut(&View<'_, N, M>) -> [f64; K],
+    F: FnMut(&View<'_>) -> [f64; K],
 {
     let mut state = State::new(q, v, system.angles());
     let mut seen = Largest { values: [0.0; K], of };

@@ -24,9 +24,11 @@ fn energies<Method: OneStep<6, 3>>(method: &mut Method, steps: u64) -> [f64; 2] 
     let ball = ball();
     let (q, v) = ball.start();
     let (moving, still) = (ball.moving_energy(&q, &v), lagrangian::energy(&ball, 0.0, &q, &v));
-    let mut kept =
-        Largest::of(|node: &View<'_, 6, 3>| (ball.moving_energy(node.state.q(), node.state.v()) - moving).abs());
-    let mut lost = Largest::of(|node: &View<'_, 6, 3>| (node.energy() - still).abs());
+    let mut kept = Largest::of(|node: &View<'_>| {
+        let state = node.state.typed().unwrap();
+        (ball.moving_energy(state.q(), state.v()) - moving).abs()
+    });
+    let mut lost = Largest::of(|node: &View<'_>| (node.energy() - still).abs());
     let schedule = Schedule { t0: 0.0, step: 0.05, steps };
     drive(&Six::from(ball), method, &schedule, &mut State::new(q, v, [false; 6]), (&mut kept, &mut lost)).unwrap();
     [kept.value, lost.value]

@@ -10,8 +10,8 @@ use test_systems::{CompoundPendulum, Model};
 fn drift(step: f64, steps: u64) -> f64 {
     let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).pseudo_holonomic();
     let (q, v) = pendulum.start();
-    let mut off = Largest::of(|node: &View<'_, 3, 2>| {
-        let [x, y] = pendulum.hinge(node.state.q());
+    let mut off = Largest::of(|node: &View<'_>| {
+        let [x, y] = pendulum.hinge(node.state.typed().unwrap().q());
         x.hypot(y)
     });
     let mut state = State::new(q, v, [false, false, true]);

@@ -19,14 +19,11 @@ impl<F> Largest<F> {
     }
 }
 
-impl<F, const N: usize, const M: usize> dla::Observer<N, M> for Largest<F>
-where
-    F: FnMut(&View<'_, N, M>) -> f64,
-{
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl<F: FnMut(&View<'_>) -> f64> dla::Observer for Largest<F> {
+    fn start(&mut self, node: &View<'_>) {
         self.value = (self.of)(node);
     }
-    fn step(&mut self, node: &View<'_, N, M>, _report: &dla::StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &dla::Report) -> ControlFlow<()> {
         // What is not a number wins.
         self.value = lagrangian::linear::larger(self.value, (self.of)(node));
         ControlFlow::Continue(())
@@ -47,16 +44,17 @@ pub fn end<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: us
 }
 
 /// The largest misses of positions and of velocities over a run.
-pub fn misses<Sys: System<N, M>, Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize>(
+pub fn misses<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    method: &mut Method,
+    method: &mut dyn OneStep<N, M>,
     (q, v): Place<N>,
     step: f64,
     steps: u64,
 ) -> [f64; 2] {
     let mut state = State::new(q, v, system.angles());
-    let mut positions = Largest::of(|node: &View<'_, N, M>| position_residual(system, node.t, node.state.q()));
-    let mut velocities = Largest::of(|node: &View<'_, N, M>| node.constraint());
+    let mut positions =
+        Largest::of(|node: &View<'_>| position_residual(system, node.t, node.state.typed().unwrap().q()));
+    let mut velocities = Largest::of(|node: &View<'_>| node.constraint());
     let schedule = Schedule { t0: 0.0, step, steps };
     drive(system, method, &schedule, &mut state, (&mut positions, &mut velocities)).unwrap();
     [positions.value, velocities.value]

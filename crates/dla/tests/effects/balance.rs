@@ -1,7 +1,7 @@
 //! The energy and the work.
 
 use crate::effects::tools::{Laden, assert_order, laden, moving, run, sleigh, steps};
-use dla::{Composition, Dla, Energy, Observer, OneStep, StepReport, View, Work};
+use dla::{Composition, Dla, Energy, Observer, OneStep, Report, View, Work};
 use lagrangian::{Piecewise, System};
 use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, MovingMass, Slope, Thrust, Torque};
@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 
 /// The largest error of the energy balance, and what it would be without the work.
 #[derive(Debug, Default)]
-pub struct Balance<const N: usize> {
-    pub work: Work<N>,
+pub struct Balance {
+    pub work: Work,
     first: f64,
     /// The largest `|E - E0 - work|` (J).
     pub worst: f64,
@@ -21,15 +21,15 @@ pub struct Balance<const N: usize> {
     pub slip: f64,
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Balance<N> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Balance {
+    fn start(&mut self, node: &View<'_>) {
         self.work.start(node);
         self.first = node.energy();
     }
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         self.work.resume(node);
     }
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         let flow = self.work.step(node, report);
         let change = node.energy() - self.first;
         self.unpaid = self.unpaid.max(change.abs());
@@ -48,7 +48,7 @@ fn balance<Sys, Method, const N: usize, const M: usize>(
     mut method: Method,
     start: ([f64; N], [f64; N]),
     h: f64,
-) -> Balance<N>
+) -> Balance
 where
     Sys: System<N, M> + Piecewise,
     Method: OneStep<N, M>,
@@ -112,12 +112,12 @@ fn the_impulse_of_a_jump_is_work() {
     assert!(seen.worst < 1e-10 && seen.unpaid > jump, "{seen:?}");
 
     // The control: an observer that is not shown the jumps misses just these.
-    struct Blind(Balance<3>);
-    impl Observer<3, 2> for Blind {
-        fn start(&mut self, node: &View<'_, 3, 2>) {
+    struct Blind(Balance);
+    impl Observer for Blind {
+        fn start(&mut self, node: &View<'_>) {
             self.0.start(node);
         }
-        fn step(&mut self, node: &View<'_, 3, 2>, report: &StepReport<2>) -> ControlFlow<()> {
+        fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
             self.0.step(node, report)
         }
     }

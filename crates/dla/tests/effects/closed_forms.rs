@@ -82,7 +82,7 @@ fn skate_on_a_slope() {
     // Hundred turns: on the mean it does not descend, but moves across the slope. Each turn is 64 steps, the same
     // up to symmetry, so the method errs by a periodic amount along the slope.
     let period = TAU / omega;
-    let mut nodes = Trajectory::<3, 1>::every(64);
+    let mut nodes = Trajectory::every(64);
     run(&system, &mut Dla::midpoint(), &steps(period / 64.0, 6400), start.to_coordinates(), &mut nodes);
     let descent = nodes.nodes().iter().fold(0.0_f64, |m, node| m.max(node.q[0].abs()));
     let across = nodes.nodes().last().unwrap().q[1];

@@ -3,7 +3,7 @@
 use crate::effects::balance::sine;
 use crate::effects::tools::{Laden, laden, moving, run, sleigh, steps};
 use crate::support::ByHand;
-use dla::{Dla, Observer, StepReport, View};
+use dla::{Dla, Observer, Report, View};
 use lagrangian::With;
 use scene::AnyEffect;
 use sleigh::effects::Thrust;
@@ -16,11 +16,11 @@ struct Spin {
     start: f64,
     worst: f64,
 }
-impl Observer<4, 1> for Spin {
-    fn start(&mut self, node: &View<'_, 4, 1>) {
+impl Observer for Spin {
+    fn start(&mut self, node: &View<'_>) {
         self.start = node.state.v()[2] + node.state.v()[3];
     }
-    fn step(&mut self, node: &View<'_, 4, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         let spin = node.state.v()[2] + node.state.v()[3];
         self.worst = self.worst.max((spin / self.start - 1.0).abs());
         ControlFlow::Continue(())

@@ -1,9 +1,11 @@
 //! Each effect alone, and ten random combinations, by the discrete principle, by the reduced equations and by the
 //! independent integration whose results are stored.
 
-use crate::effects::{hand, tools};
-use dla::{Composition, Dla, Form, Schedule};
-use scene::{Built, Scene, Visitor};
+use crate::effects::hand;
+use crate::effects::tools::steps;
+use crate::effects::typed::Run;
+use dla::{Composition, Dla, Form};
+use scene::{Scene, Started};
 
 /// `golden/effects.py` writes it and says how.
 const GOLDEN: &str = include_str!("golden/effects.txt");
@@ -17,26 +19,16 @@ pub fn scenes() -> impl Iterator<Item = (Scene, [f64; 7])> {
     })
 }
 
-/// The state at the end by the composition of order 8 of the midpoint rule, solved in the given form.
-struct ByDla {
-    form: Form,
-    step: f64,
-    end: f64,
-}
-
-impl Visitor for ByDla {
-    type Output = ([f64; 7], Vec<f64>);
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let schedule = Schedule { t0: 0.0, step: self.step, steps: (self.end / self.step).round() as u64 };
-        let mut method = Composition::fifteen8(Dla::midpoint().solved(self.form));
-        let state = tools::run(&*system, &mut method, &schedule, (q, v), ());
-        let (q, v) = (state.unwrapped(), *state.v());
-        let sleigh = system.sleigh().unwrap();
-        let at = sleigh.sleigh_state(&q, &v);
-        let [psi, rate] = sleigh.rotor(&q, &v).unwrap_or([0.0; 2]);
-        ([at.x, at.y, at.heading, at.speed, at.turn_rate, psi, rate], system.jump_times(0.0, self.end))
-    }
+/// The state at the end by the composition of order 8 of the midpoint rule, solved in the given form, and the jumps until then.
+fn by_dla(scene: &Scene, form: Form, step: f64, end: f64) -> ([f64; 7], Vec<f64>) {
+    let Started { system, q, v } = scene.system().unwrap();
+    let method = Composition::fifteen8(Dla::midpoint().solved(form));
+    let schedule = steps(step, (end / step).round() as u64);
+    let [q, v] = Run { scene, method, schedule, start: (q, v) }.end();
+    let at = system.sleigh_state(&q, &v);
+    let [psi, rate] = system.rotor(&q, &v).unwrap_or([0.0; 2]);
+    let jumps = system.mechanism().jump_times(0.0, end);
+    ([at.x, at.y, at.heading, at.speed, at.turn_rate, psi, rate], jumps)
 }
 
 fn distance(a: &[f64; 7], b: &[f64; 7]) -> f64 {
@@ -59,7 +51,7 @@ fn three_computations_agree() {
             continue;
         }
         let end = 0.15;
-        let by_dla = |form| scene.visit(ByDla { form, step: 0.0125, end }).unwrap();
+        let by_dla = |form| by_dla(&scene, form, 0.0125, end);
         let (basis, jumps) = by_dla(Form::Best);
         let (multipliers, _) = by_dla(Form::Multipliers);
         let hand = hand::motion(&scene, &jumps, end, 0.05);
@@ -78,7 +70,7 @@ fn three_computations_agree() {
 fn a_stored_end_is_met() {
     let (scene, stored) = scenes().find(|(scene, _)| scene.title == "random 1 plain").unwrap();
     let end = scene.run.duration;
-    let (found, _) = scene.visit(ByDla { form: Form::Best, step: 0.05, end }).unwrap();
+    let (found, _) = by_dla(&scene, Form::Best, 0.05, end);
     let error = distance(&found, &stored);
     assert!(error < 1e-10 * 4f64.powi(8), "{error:e}");
 }
@@ -89,7 +81,7 @@ fn three_computations_agree_at_length() {
     let mut count = 0;
     for (scene, stored) in scenes() {
         let end = scene.run.duration;
-        let by_dla = |form| scene.visit(ByDla { form, step: 0.0125, end }).unwrap();
+        let by_dla = |form| by_dla(&scene, form, 0.0125, end);
         let (basis, jumps) = by_dla(Form::Best);
         let (multipliers, _) = by_dla(Form::Multipliers);
         let hand = hand::motion(&scene, &jumps, end, 0.05);

@@ -11,3 +11,4 @@ mod potentials;
 mod strength;
 mod tools;
 mod turntable;
+mod typed;

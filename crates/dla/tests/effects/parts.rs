@@ -118,9 +118,9 @@ fn parts_make_the_whole() {
     let system: Laden<Sleigh> = laden(sleigh(), vec![AnyEffect::Bowl(Bowl::new([0.4, 0.15], [0.2, -0.3]).unwrap())]);
     let (q, v) = moving().to_coordinates();
     let (schedule, start) = (steps(0.05, 100), State::new(q, v, system.angles()));
-    let (mut whole, mut nodes) = (start, Trajectory::<3, 1>::every(1));
+    let (mut whole, mut nodes) = (start, Trajectory::every(1));
     drive(&system, &mut Dla::midpoint(), &schedule, &mut whole, &mut nodes).unwrap();
-    let (mut parts, mut seen) = (start, Trajectory::<3, 1>::every(1));
+    let (mut parts, mut seen) = (start, Trajectory::every(1));
     let mut method = Dla::midpoint();
     for (part, made) in [(0..30, 30), (30..31, 31), (31..100, 100)] {
         let done = drive_part(&system, &mut method, &schedule, part, &mut parts, &mut seen).unwrap();

@@ -1,28 +1,27 @@
 //! Runs of systems that may jump.
 
-use dla::{Observer, OneStep, Piece, PiecewiseMechanics, Schedule, State, drive_part, piece_by_piece};
+use dla::{
+    AnyState, Observer, OneStep, Piece, PiecewiseMechanics, Schedule, State, Subject, drive_part, piece_by_piece,
+};
 use lagrangian::With;
 use scene::{AnyEffect, EffectList};
 use sleigh::{Sleigh, SleighState};
 
 /// Runs piece by piece, as a command does.
-pub fn run<Method, Obs, const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
-    method: &mut Method,
+pub fn run<Sys: PiecewiseMechanics<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &mut dyn OneStep<N, M>,
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
-    mut observer: Obs,
-) -> State<N>
-where
-    Method: OneStep<N, M>,
-    Obs: Observer<N, M>,
-{
-    let mut state = State::new(q, v, system.angles());
-    piece_by_piece(system, schedule, &mut state, |piece, Piece { steps, schedule }, state| {
-        drive_part(piece, method, &schedule, steps, state, &mut observer)
+    mut observer: impl Observer,
+) -> State<N> {
+    let mut state = AnyState::from(State::new(q, v, system.angles()));
+    piece_by_piece(0, &Subject::from(system), schedule, &mut state, |_, Piece { steps, schedule }, state| {
+        let piece = system.smooth_piece(schedule.middle(&steps));
+        drive_part(&*piece, method, &schedule, steps, state.typed_mut().unwrap(), &mut observer)
     })
     .unwrap();
-    state
+    *state.typed().unwrap()
 }
 
 /// A body of a scene with a list of effects: the type of all runs here, so that each body is compiled once.

@@ -11,7 +11,7 @@ fn table(rate: f64) -> Laden<Guided<0>> {
 }
 
 /// Where so many steps end, and how well the constraint held.
-fn on_the_constraint(count: u64) -> (State<3>, Balance<3>) {
+fn on_the_constraint(count: u64) -> (State<3>, Balance) {
     let mut seen = Balance::default();
     let end = run(&table(0.35), &mut Dla::midpoint(), &steps(0.02, count), moving().to_coordinates(), &mut seen);
     let (q, v) = (end.unwrapped(), end.v());

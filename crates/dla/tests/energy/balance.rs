@@ -1,6 +1,6 @@
 use crate::energy::systems::{Friction, Particle, Potential, at_centre, com, wrapped};
 use crate::support::Three;
-use dla::{Dla, Energy, Observer, OneStep, Schedule, State, StepReport, View, drive};
+use dla::{Dla, Energy, Observer, OneStep, Report, Schedule, State, View, drive};
 use lagrangian::{System, energy};
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -37,11 +37,11 @@ impl Balance {
         mean / (variance / n).sqrt()
     }
 }
-impl<const N: usize, const M: usize> Observer<N, M> for Balance {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Balance {
+    fn start(&mut self, node: &View<'_>) {
         self.start = node.energy();
     }
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         let change = node.energy() - self.start;
         self.worst = self.worst.max((change / self.start).abs());
         self.slip = self.slip.max(node.constraint());

@@ -7,13 +7,13 @@ use sleigh::ClosedMap;
 const SCHEDULE: Schedule = Schedule { t0: 0.5, step: 0.05, steps: 1000 };
 
 /// A run in one piece, and the same one stopped after `stop` steps, written, read and resumed.
-fn whole_and_resumed<Method>(make: impl Fn() -> Method, (stop, steps): (u64, u64)) -> [(State<3>, Trajectory<3, 1>); 2]
+fn whole_and_resumed<Method>(make: impl Fn() -> Method, (stop, steps): (u64, u64)) -> [(State<3>, Trajectory); 2]
 where
     Method: OneStep<3, 1>,
 {
     let sleigh = system();
     let (schedule, every) = (Schedule { steps, ..SCHEDULE }, steps / 10);
-    let part = |method: &mut Method, steps, state: &mut State<3>, trajectory: &mut Trajectory<3, 1>| {
+    let part = |method: &mut Method, steps, state: &mut State<3>, trajectory: &mut Trajectory| {
         drive_part(&sleigh, method, &schedule, steps, state, trajectory).unwrap();
     };
     let (mut whole, mut nodes) = (state_of(&backward()), Trajectory::every(every));
@@ -23,7 +23,7 @@ where
     part(&mut method, 0..stop, &mut state, &mut before);
     let mut checkpoint = Checkpoint::of([("method", "any".to_owned())]);
     state.save(&mut checkpoint);
-    Work::<3>::default().save(&mut checkpoint);
+    Work::default().save(&mut checkpoint);
     checkpoint.put("memory", &method.memory());
     let text = checkpoint.to_text();
 
@@ -32,7 +32,7 @@ where
     let mut resumed = State::load(&read, [false, false, true]).unwrap();
     assert_eq!(resumed, state);
     let t = schedule.time(stop);
-    let mut after = Trajectory::resumed(every, t, Work::load(&read, t, &resumed).unwrap());
+    let mut after = Trajectory::resumed(every, t, Work::load(&read, t, &resumed.into()).unwrap());
     let mut method = make();
     method.recall(&read.list("memory").unwrap(), &resumed);
     part(&mut method, stop..steps, &mut resumed, &mut after);

@@ -1,5 +1,8 @@
 use crate::runs::{backward, sleigh, sleigh_state, state_of, system};
-use dla::{Composition, Dla, Gauss, Hermite, Observer, OneStep, Samples, Schedule, State, StepReport, View, drive};
+use crate::support::{OWN, run_own};
+use dla::{
+    AnyState, Composition, Dla, Gauss, Hermite, Observer, OneStep, Report, Samples, Schedule, State, View, drive,
+};
 use lagrangian::constraint_residual;
 use sleigh::{Exact, SleighState};
 use std::ops::ControlFlow;
@@ -28,11 +31,12 @@ fn schedule(steps: u64) -> Schedule {
 /// The largest error of samples, and of the constraint at them.
 fn sampled<Method: OneStep<3, 1> + Copy>(method: Method, steps: u64) -> (f64, f64) {
     let (sleigh, mut state) = (system(), state_of(&backward()));
-    let mut samples = Samples::new(method, &TIMES);
-    drive(&sleigh, &mut { method }, &schedule(steps), &mut state, &mut samples).unwrap();
+    let mut samples = Samples::new(&OWN, &TIMES);
+    run_own(&sleigh, method, &schedule(steps), &mut state, &mut samples).unwrap();
     assert_eq!((samples.taken().len(), samples.failure()), (TIMES.len(), None));
     let taken = samples.taken().iter().zip(TIMES);
     taken.fold((0.0, 0.0), |(e, c): (f64, f64), (state, t)| {
+        let state = state.typed().unwrap();
         let [residual] = constraint_residual(&sleigh, t, state.q(), state.v());
         (e.max(error(&sleigh_state(state), t)), c.max(residual.abs()))
     })
@@ -66,28 +70,28 @@ fn samples_have_the_order_of_the_method_and_hold_the_constraint() {
 fn samples_at_nodes_are_the_nodes() {
     let (sleigh, times) = (system(), [0.0, 2.5, 2.6, 5.0, 10.0, 11.0]);
     let (mut plain, mut watched) = (state_of(&backward()), state_of(&backward()));
-    let mut samples = Samples::new(Dla::midpoint(), &times);
-    drive(&sleigh, &mut Dla::midpoint(), &schedule(80), &mut watched, &mut samples).unwrap();
+    let mut samples = Samples::new(&OWN, &times);
+    run_own(&sleigh, Dla::midpoint(), &schedule(80), &mut watched, &mut samples).unwrap();
     drive(&sleigh, &mut Dla::midpoint(), &schedule(80), &mut plain, ()).unwrap();
     assert_eq!(plain, watched);
     assert_eq!(samples.taken().len(), 5, "eleven seconds are not in the run");
-    assert_eq!((samples.taken()[0], samples.taken()[4]), (state_of(&backward()), plain));
+    assert_eq!([&samples.taken()[0], &samples.taken()[4]], [&state_of(&backward()).into(), &plain.into()]);
     let mut half = state_of(&backward());
     drive(&sleigh, &mut Dla::midpoint(), &Schedule { steps: 40, ..schedule(80) }, &mut half, ()).unwrap();
-    assert_eq!(samples.taken()[3], half);
+    assert_eq!(samples.taken()[3], half.into());
     // A run without a step has its start.
     let (none, mut state) = (Schedule { steps: 0, ..schedule(80) }, state_of(&backward()));
-    let mut samples = Samples::new(Dla::midpoint(), &times);
-    drive(&sleigh, &mut Dla::midpoint(), &none, &mut state, &mut samples).unwrap();
-    assert_eq!(samples.taken(), &[state]);
+    let mut samples = Samples::new(&OWN, &times);
+    run_own(&sleigh, Dla::midpoint(), &none, &mut state, &mut samples).unwrap();
+    assert_eq!(samples.taken(), [AnyState::from(state)]);
 
     // Backward in time, from the end.
     let times = [8.0, 3.3];
-    let mut samples = Samples::new(Dla::midpoint(), &times);
+    let mut samples = Samples::new(&OWN, &times);
     let back = Schedule { t0: 10.0, step: -0.125, steps: 80 };
-    drive(&sleigh, &mut Dla::midpoint(), &back, &mut plain, &mut samples).unwrap();
+    run_own(&sleigh, Dla::midpoint(), &back, &mut plain, &mut samples).unwrap();
     assert_eq!(samples.taken().len(), 2);
-    assert!(samples.taken().iter().zip(times).all(|(state, t)| error(&sleigh_state(state), t) < 0.01));
+    assert!(samples.taken().iter().zip(times).all(|(state, t)| error(&sleigh_state(state.typed().unwrap()), t) < 0.01));
 }
 
 /// The nodes of a run in pairs.
@@ -97,15 +101,15 @@ struct Quintics {
     found: Vec<(f64, Hermite<3>)>,
 }
 
-impl Observer<3, 1> for Quintics {
-    fn start(&mut self, node: &View<'_, 3, 1>) {
-        self.before = Some((node.t, *node.state));
+impl Observer for Quintics {
+    fn start(&mut self, node: &View<'_>) {
+        self.before = Some((node.t, *node.state.typed().unwrap()));
     }
-    fn step(&mut self, node: &View<'_, 3, 1>, _: &StepReport<1>) -> ControlFlow<()> {
-        let (t0, state) = self.before.unwrap();
-        let quintic = Hermite::between(node.system, (t0, &state), (node.t, node.state)).unwrap();
+    fn step(&mut self, node: &View<'_>, _: &Report) -> ControlFlow<()> {
+        let ((t0, before), state) = (self.before.unwrap(), *node.state.typed().unwrap());
+        let quintic = Hermite::between(&system(), (t0, &before), (node.t, &state)).unwrap();
         self.found.push((node.t, quintic));
-        self.before = Some((node.t, *node.state));
+        self.before = Some((node.t, state));
         ControlFlow::Continue(())
     }
 }

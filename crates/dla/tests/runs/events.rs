@@ -1,8 +1,8 @@
-use crate::runs::{Motion, backward, sleigh, sleigh_state, state_of, system};
-use crate::support::{ByHand, Two};
+use crate::runs::{Motion, backward, sleigh, state_of, system};
+use crate::support::{ByHand, OWN, Two, run_own};
 use dla::{
-    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Piece, Schedule, State, Trajectory, Watch,
-    close_crossings, drive, drive_part, piece_by_piece,
+    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Schedule, State, Trajectory, Watch, close_crossings,
+    drive,
 };
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
@@ -11,8 +11,8 @@ use sleigh::{Sleigh, SleighState};
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-fn speed(state: &State<3>) -> f64 {
-    sleigh_state(state).speed
+fn speed(q: &[f64], v: &[f64]) -> f64 {
+    SleighState::from_coordinates(q.first_chunk().unwrap(), v.first_chunk().unwrap()).speed
 }
 
 /// Times at which the events of a run from time zero happen, by their place in the list.
@@ -21,14 +21,14 @@ fn times<Method>(
     method: Method,
     start: &SleighState,
     (step, steps): (f64, u64),
-    events: &[Event<'_, 3>],
+    events: &[Event<'_>],
 ) -> Vec<(usize, f64)>
 where
     Method: OneStep<3, 1> + Copy,
 {
-    let mut watch = Watch::new(method, events, ());
+    let mut watch = Watch::new(&OWN, events, ());
     let schedule = Schedule { t0: 0.0, step, steps };
-    drive(&ByHand::from(*sleigh), &mut { method }, &schedule, &mut state_of(start), &mut watch).unwrap();
+    run_own(&ByHand::from(*sleigh), method, &schedule, &mut state_of(start), &mut watch).unwrap();
     watch.crossings().iter().map(|crossing| (crossing.event, crossing.t)).collect()
 }
 
@@ -37,10 +37,7 @@ fn errors<Method: OneStep<3, 1> + Copy>(method: Method, steps: u64) -> [f64; 2] 
     let (sleigh, start) = (sleigh(), backward());
     let motion = Motion::new(&sleigh, &start);
     let right_angle = std::f64::consts::FRAC_PI_2;
-    let events = [
-        Event::new("heading", |_, state: &State<3>| state.unwrapped()[2] - right_angle),
-        Event::new("speed", |_, state| speed(state)),
-    ];
+    let events = [Event::new("heading", |_, q, _| q[2] - right_angle), Event::new("speed", |_, q, v| speed(q, v))];
     let found = times(&sleigh, method, &start, (40.0 / steps as f64, steps), &events);
     // It has turned by a right angle before it stands: half of the whole turn, pi sqrt(5)/2, is more.
     assert_eq!(found.iter().map(|(event, _)| *event).collect::<Vec<_>>(), [0, 1], "{found:?}");
@@ -117,8 +114,8 @@ fn no_crossing_is_missed(mut runner: TestRunner) -> [i32; 3] {
             let motion = Motion::new(&sleigh, &start);
             let low = 10f64.powf(exponent) * motion.speed;
             let events = [
-                Event::new("speed", |_, state| speed(state)),
-                Event::new("size of the speed", |_, state| speed(state).abs() - low),
+                Event::new("speed", |_, q, v| speed(q, v)),
+                Event::new("size of the speed", |_, q, v| speed(q, v).abs() - low),
             ];
             // Steps from a small part of the shortest time of the motion to a large one.
             let step = part / motion.kappa.abs().max(size / gyration);
@@ -167,33 +164,34 @@ fn no_crossing_is_missed(mut runner: TestRunner) -> [i32; 3] {
 fn directions_and_the_end_of_a_run() {
     let (sleigh, start) = (sleigh(), backward());
     let turnaround = Motion::new(&sleigh, &start).turnaround;
-    let event = |direction| Event::new("speed", |_, state| speed(state)).in_direction(direction);
+    let event = |direction| Event::new("speed", |_, q, v| speed(q, v)).in_direction(direction);
     let run = (0.05, 800);
     let found = |direction| times(&sleigh, Dla::midpoint(), &start, run, &[event(direction)]).len();
     assert_eq!([Direction::Rising, Direction::Falling, Direction::Both].map(found), [1, 0, 1]);
 
     // The first that is terminal ends the run; the one that comes after it in the same step does not happen.
     let events = [
-        Event::new("later", |t, _| t - turnaround - 1e-3),
+        Event::new("later", |t, _, _| t - turnaround - 1e-3),
         event(Direction::Both).terminal(),
-        Event::new("before", |t, _| t - turnaround + 1e-3),
+        Event::new("before", |t, _, _| t - turnaround + 1e-3),
     ];
-    let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
+    let mut watch = Watch::new(&OWN, &events, Trajectory::every(1));
     let mut state = state_of(&start);
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
-    let made = drive(&ByHand::from(sleigh), &mut Dla::midpoint(), &schedule, &mut state, &mut watch).unwrap();
+    let made = run_own(&ByHand::from(sleigh), Dla::midpoint(), &schedule, &mut state, &mut watch).unwrap();
     let happened: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
-    let ended = *watch.ended().unwrap();
+    let ended = watch.ended().unwrap().clone();
     assert_eq!((happened, ended.k), (vec![2, 1], made - 1));
     // Located to the rounding of the speed, some eps of its parts over the acceleration a w^2 = 0.4.
-    assert!(speed(&ended.state).abs() <= 8.0 * f64::EPSILON, "{:e}", speed(&ended.state));
+    let speed = speed(&ended.state.unwrapped(), ended.state.v());
+    assert!(speed.abs() <= 8.0 * f64::EPSILON, "{speed:e}");
     assert!(ended.within <= 8.0 * f64::EPSILON * schedule.step, "{:e}", ended.within);
     // The trajectory ends there, on the constraint; the nodes before are those of the run.
     let trajectory = watch.into_inner();
     let last = trajectory.nodes().last().unwrap();
-    assert_eq!((last.k, last.t, last.q), (made, ended.t, ended.state.unwrapped()));
+    assert_eq!((last.k, last.t, &last.q), (made, ended.t, &ended.state.unwrapped()));
     assert!(last.constraint <= 2e-16 && last.multipliers.is_some());
-    let mut plain = Trajectory::<3, 1>::every(1);
+    let mut plain = Trajectory::every(1);
     drive(&ByHand::from(sleigh), &mut Dla::midpoint(), &schedule, &mut state_of(&start), &mut plain).unwrap();
     assert_eq!(trajectory.nodes()[..made as usize], plain.nodes()[..made as usize]);
 }
@@ -236,18 +234,11 @@ impl Piecewise for Pushed {
 fn events_within_each_piece_and_in_a_jump() {
     let system = Two::from(Pushed { after: None, imposed: true });
     let mut state = State::new([0.58, 0.0], [0.0, -1.0], [false; 2]);
-    let events = [
-        Event::new("x", |_, state: &State<2>| state.q()[0]),
-        Event::new("y'", |_, state: &State<2>| state.v()[1]),
-        Event::new("x'", |_, state: &State<2>| state.v()[0]),
-    ];
+    let events = [Event::new("x", |_, q, _| q[0]), Event::new("y'", |_, _, v| v[1]), Event::new("x'", |_, _, v| v[0])];
     // Steps so long that both zeros of x fall into one; the midpoint rule is exact for a constant force.
     let schedule = Schedule { t0: 0.0, step: 0.5, steps: 4 };
-    let mut watch = Watch::new(Dla::midpoint(), &events, ());
-    piece_by_piece(&system, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
-        drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, &mut watch)
-    })
-    .unwrap();
+    let mut watch = Watch::new(&OWN, &events, ());
+    run_own(&system, Dla::midpoint(), &schedule, &mut state, &mut watch).unwrap();
     let found: Vec<_> =
         watch.crossings().iter().map(|crossing| (crossing.event, crossing.rising, crossing.t)).collect();
     let root = 0.008f64.sqrt();
@@ -266,15 +257,15 @@ fn a_touch_is_no_crossing() {
     let (sleigh, start) = (sleigh(), backward());
     let turnaround = Motion::new(&sleigh, &start).turnaround;
     let events = [
-        Event::new("square", |t, _| (t - turnaround) * (t - turnaround)),
-        Event::new("nothing", |_, _| 0.0),
-        Event::new("start", |t, _| t),
-        Event::new("no number", |_, _| f64::NAN),
+        Event::new("square", |t, _, _| (t - turnaround) * (t - turnaround)),
+        Event::new("nothing", |_, _, _| 0.0),
+        Event::new("start", |t, _, _| t),
+        Event::new("no number", |_, _, _| f64::NAN),
         // The control: a little less, and it crosses twice.
-        Event::new("dip", |t, _| (t - turnaround) * (t - turnaround) - 1e-8),
+        Event::new("dip", |t, _, _| (t - turnaround) * (t - turnaround) - 1e-8),
         // A zero on a node, crossed and touched.
-        Event::new("node", |t, _| t - 0.5),
-        Event::new("node, touched", |t, _| -(t - 0.5).abs()),
+        Event::new("node", |t, _, _| t - 0.5),
+        Event::new("node, touched", |t, _, _| -(t - 0.5).abs()),
     ];
     let found = times(&sleigh, Dla::midpoint(), &start, (0.125, 320), &events);
     assert_eq!(found.iter().map(|(event, _)| *event).collect::<Vec<_>>(), [5, 4, 4], "{found:?}");
@@ -290,10 +281,10 @@ fn straight(x0: f64) -> State<3> {
 /// Julia's DiffEqBase issue 1231 and OrdinaryDiffEq issue 2691: of several events within one step, backward, the last was taken.
 #[test]
 fn several_events_within_one_step_have_its_direction() {
-    let x = |value: f64| move |_: f64, state: &State<3>| state.q()[0] - value;
+    let x = |value: f64| move |_: f64, q: &[f64], _: &[f64]| q[0] - value;
     let events = [
-        Event::new("0", |t, _: &State<3>| t),
-        Event::new("1", |t, _: &State<3>| t - 1e-8),
+        Event::new("0", |t, _, _| t),
+        Event::new("1", |t, _, _| t - 1e-8),
         Event::new("2", x(2e-8)),
         Event::new("3", x(0.3)).in_direction(Direction::Rising),
     ];
@@ -302,9 +293,9 @@ fn several_events_within_one_step_have_its_direction() {
         // Going back nothing rises.
         (1.0, -2.0, vec![2, 1, 0], vec![2e-8, 1e-8, 0.0]),
     ] {
-        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        let mut watch = Watch::new(&OWN, &events, ());
         let schedule = Schedule { t0, step, steps: 1 };
-        drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(t0), &mut watch).unwrap();
+        run_own(&system(), Dla::midpoint(), &schedule, &mut straight(t0), &mut watch).unwrap();
         let found: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
         assert_eq!(found, order);
         for (crossing, t) in watch.crossings().iter().zip(times) {
@@ -316,13 +307,13 @@ fn several_events_within_one_step_have_its_direction() {
 
     // The first that is met ends the run: backward from x = 0 at t = 2 to x = -2.5 at t = -0.5, and not the one just before it.
     let events = [
-        Event::new("x", |_, state: &State<3>| state.q()[0] + 2.5).terminal(),
-        Event::new("later", |_, state: &State<3>| state.q()[0] + 2.5001),
-        Event::new("before", |_, state: &State<3>| state.q()[0] + 2.4999),
+        Event::new("x", |_, q, _| q[0] + 2.5).terminal(),
+        Event::new("later", |_, q, _| q[0] + 2.5001),
+        Event::new("before", |_, q, _| q[0] + 2.4999),
     ];
-    let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
+    let mut watch = Watch::new(&OWN, &events, Trajectory::every(1));
     let schedule = Schedule { t0: 2.0, step: -0.75, steps: 100 };
-    drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+    run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
     assert_eq!(watch.crossings().iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [2, 0]);
     let trajectory = watch.into_inner();
     let last = trajectory.nodes().last().unwrap();
@@ -351,11 +342,11 @@ fn crossings_are_close_by_the_samples_between_them() {
 #[test]
 fn a_fast_sine_is_found_or_in_doubt() {
     let found = |frequency: f64, samples| {
-        let events = [Event::new("a sine", |t, _| (frequency * t + 0.1).sin())];
-        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        let events = [Event::new("a sine", |t, _, _| (frequency * t + 0.1).sin())];
+        let mut watch = Watch::new(&OWN, &events, ());
         watch.samples = samples;
         let schedule = Schedule { t0: 0.0, step: 0.5, steps: 4 };
-        drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+        run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
         let times: Vec<f64> = watch.crossings().iter().map(|crossing| crossing.t).collect();
         (times, watch.close())
     };
@@ -378,17 +369,17 @@ fn a_fast_sine_is_found_or_in_doubt() {
 /// What hardly changes is no reason for doubt, whatever its rounding does, nor is a corner or a jump.
 #[test]
 fn what_hardly_changes_is_not_in_doubt() {
-    let energy = |state: &State<3>| state.v().iter().map(|v| v * v).sum::<f64>() - 1.0;
+    let energy = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>() - 1.0;
     let events = [
-        Event::new("energy", |_, state| energy(state)),
-        Event::new("x", |_, state: &State<3>| state.q()[0] - 0.7),
+        Event::new("energy", |_, _, v| energy(v)),
+        Event::new("x", |_, q, _| q[0] - 0.7),
         // A corner and a jump bend in a few parts, however many there are.
-        Event::new("corner", |t: f64, _| (t - 1.3).abs() - 0.4),
-        Event::new("jump", |t: f64, _| (t - 2.1).signum()),
+        Event::new("corner", |t: f64, _, _| (t - 1.3).abs() - 0.4),
+        Event::new("jump", |t: f64, _, _| (t - 2.1).signum()),
     ];
-    let mut watch = Watch::new(Dla::midpoint(), &events, ());
+    let mut watch = Watch::new(&OWN, &events, ());
     let schedule = Schedule { t0: 0.0, step: 0.25, steps: 16 };
-    drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+    run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
     assert_eq!(watch.close().map_or(0, |close| close.unseen), 0);
     let counts = [1, 2, 3].map(|event| watch.crossings().iter().filter(|crossing| crossing.event == event).count());
     assert_eq!(counts, [1, 2, 1]);
@@ -399,10 +390,10 @@ fn what_hardly_changes_is_not_in_doubt() {
 fn a_sample_without_a_value_is_in_doubt() {
     for (root, unseen) in [(0.3, 2), (-1.0, 0)] {
         // No number before the root, and a crossing a quarter beyond it.
-        let events = [Event::new("root", move |t: f64, _: &State<3>| (t - root).sqrt() - 0.5)];
-        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        let events = [Event::new("root", move |t: f64, _, _| (t - root).sqrt() - 0.5)];
+        let mut watch = Watch::new(&OWN, &events, ());
         let schedule = Schedule { t0: 0.0, step: 0.25, steps: 4 };
-        drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+        run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
         assert_eq!(watch.close().map_or(0, |close| close.unseen), unseen, "{root}");
         assert_eq!(watch.crossings().len(), usize::from(root > 0.0), "{root}");
     }
@@ -412,10 +403,10 @@ fn a_sample_without_a_value_is_in_doubt() {
 #[test]
 fn a_zero_at_the_start_is_not_crossed() {
     for (off, found) in [(0.0, 0), (1e-17, 0), (1e-16, 0), (-1e-16, 0), (1e-9, 1)] {
-        let events = [Event::new("x", move |_, state: &State<3>| state.q()[0] - off)];
-        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        let events = [Event::new("x", move |_, q, _| q[0] - off)];
+        let mut watch = Watch::new(&OWN, &events, ());
         let schedule = Schedule { t0: 0.0, step: 0.25, steps: 4 };
-        drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+        run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
         assert_eq!(watch.crossings().len(), found, "{off:e}");
     }
 }

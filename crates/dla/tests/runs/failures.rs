@@ -105,12 +105,12 @@ fn roots(points: impl Iterator<Item = u8>) -> [i32; 3] {
 fn a_failure_tells_what_to_do() {
     let (sleigh, system) = (sleigh(), system());
     let run = |method: &mut dyn OneStep<3, 1>, h: f64, from: SleighState| {
-        let (mut state, mut trajectory) = (state_of(&from), Trajectory::<3, 1>::every(1));
+        let (mut state, mut trajectory) = (state_of(&from), Trajectory::every(1));
         let schedule = Schedule { t0: 2.0, step: h, steps: 1000 };
         let error = drive(&system, method, &schedule, &mut state, &mut trajectory).unwrap_err();
         // The valid part is there, and ends where the error says.
         let last = trajectory.nodes().last().unwrap();
-        assert_eq!((last.k, last.t, last.q), (error.valid_steps(), error.time, state.unwrapped()));
+        assert_eq!((last.k, last.t, &last.q[..]), (error.valid_steps(), error.time, &state.unwrapped()[..]));
         assert_eq!(trajectory.nodes().len() as u64, error.valid_steps() + 1);
         assert!(trajectory.nodes().iter().all(|node| node.energy.is_finite() && node.constraint < 1e-12));
         error

@@ -1,6 +1,6 @@
 //! Methods with steps of their own within a step are looked at in each of them.
 
-use crate::support::ByHand;
+use crate::support::{ByHand, OWN_STEPS, run_own};
 use approx::assert_abs_diff_eq;
 use dla::{
     Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Watch, drive,
@@ -27,15 +27,15 @@ fn crossings(n: u32) -> impl Iterator<Item = f64> {
     (0..n).map(|k| (f64::from(k / 2) * TAU + if k % 2 == 0 { PI / 6.0 } else { 5.0 * PI / 6.0 }) / 10.0)
 }
 
-fn found<Method>(method: &Method, (step, steps): (f64, u64)) -> (Vec<Crossing<3>>, Option<Close>)
+fn found<Method>(method: &Method, (step, steps): (f64, u64)) -> (Vec<Crossing>, Option<Close>)
 where
     Method: OneStep<3, 1> + Clone,
 {
-    let events = [Event::new("x = 0.05", |_, state: &State<3>| state.q()[0] - 0.05)];
-    let mut watch = Watch::new(method.clone(), &events, ());
+    let events = [Event::new("x = 0.05", |_, q, _| q[0] - 0.05)];
+    let mut watch = Watch::new(&OWN_STEPS, &events, ());
     let mut state = State::new([0.0; 3], [1.0, 0.0, 0.0], [false, false, true]);
     let schedule = Schedule { t0: 0.0, step, steps };
-    drive(&spring(), &mut method.clone(), &schedule, &mut state, &mut watch).unwrap();
+    run_own(&spring(), method.clone(), &schedule, &mut state, &mut watch).unwrap();
     (watch.crossings().to_vec(), watch.close())
 }
 

@@ -1,22 +1,29 @@
 use crate::runs::{backward, sleigh, sleigh_state, state_of, system};
+use crate::support::{OWN, run_own};
 use dla::{
-    Composition, Dla, Gauss, OneStep, RecommendError, Recommendation, Schedule, Trajectory, drive, recommend_step,
+    AnyState, Composition, Dla, Gauss, OneStep, RecommendError, Recommendation, RunError, Samples, Schedule,
+    Trajectory, drive, recommend_by_trial,
 };
 use lagrangian::Alpha;
 use sleigh::Exact;
 
 const DURATION: f64 = 40.0;
 
-fn recommended<Method>(make: impl Fn() -> Method, tolerance: f64) -> Result<Recommendation, RecommendError>
+fn recommended<Method>(method: Method, duration: f64, tolerance: f64) -> Result<Recommendation, RecommendError>
 where
     Method: OneStep<3, 1> + Copy,
 {
-    recommend_step(&system(), make, &state_of(&backward()), DURATION, tolerance)
+    recommend_by_trial(duration, tolerance, |schedule, times| {
+        let mut samples = Samples::new(&OWN, times);
+        run_own(&system(), method, schedule, &mut state_of(&backward()), &mut samples)?;
+        let taken = samples.into_taken().map_err(|source| RunError::new(schedule.steps, schedule.t0, source))?;
+        Ok(taken.iter().map(AnyState::unwrapped).collect())
+    })
 }
 
 /// The largest error of a coordinate at any node.
 fn reached<Method: OneStep<3, 1>>(mut method: Method, found: &Recommendation) -> f64 {
-    let mut trajectory = Trajectory::<3, 1>::every((found.steps / 500).max(1));
+    let mut trajectory = Trajectory::every((found.steps / 500).max(1));
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
     drive(&system(), &mut method, &schedule, &mut state_of(&backward()), &mut trajectory).unwrap();
     let exact = Exact::new(&sleigh(), &backward()).unwrap();
@@ -27,7 +34,7 @@ fn reached<Method: OneStep<3, 1>>(mut method: Method, found: &Recommendation) ->
 }
 
 fn has_the_error<Method: OneStep<3, 1> + Copy>(name: &str, method: Method, tolerance: f64) {
-    let found = recommended(|| method, tolerance).unwrap();
+    let found = recommended(method, DURATION, tolerance).unwrap();
     assert_eq!(found.step, DURATION / found.steps as f64);
     let error = reached(method, &found);
     println!("{name} {tolerance:e}: {found:?}, reached {error:.2e}");
@@ -54,13 +61,13 @@ fn the_error_is_that_of_the_tolerance_at_length() {
 /// What cannot be reached is said, with what can.
 #[test]
 fn a_tolerance_below_rounding_is_refused_with_the_best() {
-    let error = recommended(Gauss::new::<4>, 1e-17).unwrap_err();
+    let error = recommended(Gauss::new::<4>(), DURATION, 1e-17).unwrap_err();
     println!("{error}");
     let RecommendError::OutOfReach { best, steps, .. } = error else { panic!("{error}") };
     // Positions of forty metres have an ulp of 7e-15.
     assert!(best < 1e-11 && steps > 8, "{error}");
     for (tolerance, duration) in [(0.0, 1.0), (f64::NAN, 1.0), (1e-3, -1.0), (1e-3, f64::INFINITY)] {
-        let error = recommend_step(&system(), Dla::midpoint, &state_of(&backward()), duration, tolerance).unwrap_err();
+        let error = recommended(Dla::midpoint(), duration, tolerance).unwrap_err();
         assert!(matches!(error, RecommendError::Request { .. }), "{error}");
     }
 }
@@ -68,7 +75,7 @@ fn a_tolerance_below_rounding_is_refused_with_the_best() {
 /// Forward, flip, back: how far from the start the recommended steps end, and how far rounding may bring them.
 fn returned<Method: OneStep<3, 1> + Copy>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
     let (sleigh, start) = (system(), state_of(&backward()));
-    let found = recommend_step(&sleigh, || method, &start, duration, tolerance).unwrap();
+    let found = recommended(method, duration, tolerance).unwrap();
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
     let mut state = start;
     drive(&sleigh, &mut { method }, &schedule, &mut state, ()).unwrap();

@@ -1,15 +1,15 @@
 //! Steps that are recommended by trials whose errors follow a law.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{RecommendError, Recommendation, RunError, State, StepError, recommend_by_trial};
+use dla::{RecommendError, Recommendation, RunError, StepError, recommend_by_trial};
 
 /// Trials with the error `c h^order` at every time, and with a failure above a step.
 fn by_law(order: i32, tolerance: f64, longest: f64) -> Result<Recommendation, RecommendError> {
-    recommend_by_trial::<1>(10.0, tolerance, |schedule, times| {
+    recommend_by_trial(10.0, tolerance, |schedule, times| {
         if schedule.step > longest {
             return Err(RunError::new(1, 0.0, StepError::Branch));
         }
-        Ok(times.iter().map(|t| State::new([t + 3.0 * schedule.step.powi(order)], [1.0], [false])).collect())
+        Ok(times.iter().map(|t| vec![t + 3.0 * schedule.step.powi(order)]).collect())
     })
 }
 
@@ -37,21 +37,21 @@ fn a_step_is_recommended_by_the_law_of_its_errors() {
 #[test]
 fn what_cannot_be_recommended() {
     for (tolerance, duration) in [(0.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0), (1.0, 0.0), (1.0, f64::INFINITY)] {
-        let refused = recommend_by_trial::<1>(duration, tolerance, |_, _| Ok(Vec::new())).unwrap_err();
+        let refused = recommend_by_trial(duration, tolerance, |_, _| Ok(Vec::new())).unwrap_err();
         assert!(matches!(refused, RecommendError::Request { .. }));
     }
     // A method that cannot do the system is asked once, at the longest step of a fourth.
     let mut asked = 0;
-    let refused = recommend_by_trial::<1>(10.0, 1e-3, |_, _| {
+    let refused = recommend_by_trial(10.0, 1e-3, |_, _| {
         asked += 1;
         Err(RunError::new(1, 0.0, StepError::Unsupported { reason: "it cannot" }))
     });
     assert!(matches!(refused, Err(RecommendError::Fails { step, .. }) if step == 2.5) && asked == 1, "{refused:?}");
     // Errors that stay are out of reach, whatever the step.
     let mut sign = 1.0;
-    let stays = recommend_by_trial::<1>(10.0, 1e-9, |schedule, times| {
+    let stays = recommend_by_trial(10.0, 1e-9, |schedule, times| {
         sign = -sign;
-        Ok(times.iter().map(|t| State::new([t + sign * 1e-8 * (1.0 + schedule.step)], [1.0], [false])).collect())
+        Ok(times.iter().map(|t| vec![t + sign * 1e-8 * (1.0 + schedule.step)]).collect())
     });
     let Err(RecommendError::OutOfReach { tolerance, best, step, steps }) = stays else { panic!("{stays:?}") };
     assert!(tolerance == 1e-9 && (2e-8..1e-6).contains(&best));

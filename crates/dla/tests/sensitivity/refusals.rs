@@ -42,7 +42,7 @@ fn a_failed_step_and_numbers_that_are_none() {
     // Of a run the error says which step it was, and when.
     let schedule = Schedule { t0: 0.5, step: 0.1, steps: 3 };
     let failed = Sensitivity::of_member(&system)
-        .drive(&mut Dla::midpoint(), &schedule, &mut state, &mut [], |_, _| ControlFlow::Continue(()))
+        .drive(&mut Dla::midpoint(), &schedule, &mut state, &mut [], |_, _, _| ControlFlow::Continue(()))
         .unwrap_err();
     assert_eq!((failed.step, failed.time.to_bits()), (1, 0.5f64.to_bits()));
     assert_eq!(state, before);

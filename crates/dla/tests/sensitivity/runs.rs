@@ -38,9 +38,9 @@ fn tangents_are_the_differences_of_runs() {
     let sensitivity = Sensitivity::of_member(&system);
     let mut seen = 0;
     let made = sensitivity
-        .drive(&mut Dla::midpoint(), &SCHEDULE, &mut state, &mut tangents, |node, tangents| {
-            seen = node.k;
-            assert_eq!(node.t.to_bits(), SCHEDULE.time(node.k).to_bits());
+        .drive(&mut Dla::midpoint(), &SCHEDULE, &mut state, &mut tangents, |t, _, tangents| {
+            seen += 1;
+            assert_eq!(t.to_bits(), SCHEDULE.time(seen).to_bits());
             assert_eq!(tangents.len(), 6);
             ControlFlow::Continue(())
         })
@@ -72,10 +72,12 @@ fn a_run_may_be_ended_and_tangents_scaled() {
     let system = Controlled::at(&Controlled::PARAMETERS);
     let mut state = admissible(&system, 0.0, START.0, START.1);
     let mut tangents = [Tangent { state: Variation { q: [1.0, 0.0, 0.0], v: [0.0; 3] }, parameters: [0.0; 6] }];
+    let mut seen = 0;
     let made = Sensitivity::of_member(&system)
-        .drive(&mut Dla::midpoint(), &SCHEDULE, &mut state, &mut tangents, |node, tangents| {
+        .drive(&mut Dla::midpoint(), &SCHEDULE, &mut state, &mut tangents, |_, _, tangents| {
             tangents[0].state = Variation::ZERO;
-            if node.k == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            seen += 1;
+            if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
         .unwrap();
     assert_eq!(made, 3);

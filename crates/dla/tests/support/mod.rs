@@ -12,10 +12,51 @@ use crate::rest::{disk, systems as rest};
 use crate::runs::{counter_example, events, failures, observers, scripted};
 use crate::systems::{alternating, continued, degenerate, driven, lanes, models as small};
 use crate::{corners, drive};
+use dla::{
+    AnyState, FullMechanics, Method, Observer, OneStep, OwnMethods, Piece, RunError, Schedule, State, Stepper, Subject,
+    make_steps, piece_by_piece,
+};
 use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, Slope, Torque};
 use sleigh::{CentreOfMass, Guided, Sleigh};
+use std::sync::LazyLock;
 use test_systems::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall};
+
+/// A method as what a system brings of its own: observers and runs that ask for one by its name make it.
+pub(crate) struct Own<Step>(pub(crate) Step);
+
+/// The name of a method whose steps are those of the run.
+pub(crate) static OWN: LazyLock<Method> = LazyLock::new(|| Method::named("dla", None).unwrap());
+
+/// The name of a method that makes steps of its own within a step.
+pub(crate) static OWN_STEPS: LazyLock<Method> = LazyLock::new(|| Method::named("taylor", None).unwrap());
+
+impl<Step: OneStep<N, M> + Clone, const N: usize, const M: usize> OwnMethods<N, M> for Own<Step> {
+    fn closed_map<'a>(&'a self, _t: f64, _general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
+        Box::new(self.0.clone())
+    }
+
+    fn series(&self, _t: f64, _tolerance: f64) -> Option<Stepper<'_, N, M>> {
+        Some(Box::new(self.0.clone()))
+    }
+}
+
+/// Makes a run with a method, which observers find by the names above.
+pub(crate) fn run_own<Step: OneStep<N, M> + Clone, const N: usize, const M: usize>(
+    system: &dyn FullMechanics<N, M>,
+    method: Step,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    observer: &mut dyn Observer,
+) -> Result<u64, RunError> {
+    let (own, mut moved) = (Own(method), AnyState::from(*state));
+    let subject = Subject::new(system, &own);
+    let made = piece_by_piece(0, &subject, schedule, &mut moved, |piece, Piece { steps, schedule }, state| {
+        make_steps(piece, &mut *piece.integrator(&OWN), &schedule, steps, state, observer)
+    });
+    *state = *moved.typed().unwrap();
+    made
+}
 
 macro_rules! shape {
     ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* } $($more:tt)*) => {
@@ -164,6 +205,13 @@ shape! {
         InCylinder: cylinder::Ball,
         Chaplygin: ChaplyginBall,
         OnTurntable: TurntableBall,
+    }
+}
+
+/// It never jumps.
+impl Piecewise for Free {
+    fn piece(&self, _t: f64) -> Self {
+        *self
     }
 }
 

@@ -43,7 +43,7 @@ fn multipliers_are_the_forces_of_the_constraint() {
     for node in &trajectory.nodes()[1..] {
         let (before, after) = (Pushed::exact(node.t - h).1[2], Pushed::exact(node.t).1[2]);
         // Third derivatives below 5.
-        approx::assert_abs_diff_eq!(node.multipliers.unwrap()[0], (after - before) / h, epsilon = 5.0 * h * h);
+        approx::assert_abs_diff_eq!(node.multipliers.as_ref().unwrap()[0], (after - before) / h, epsilon = 5.0 * h * h);
     }
 }
 
@@ -101,7 +101,7 @@ fn discrete_lagrangians_by_hand() {
             approx::assert_abs_diff_eq!(&a.v[..], &b.v[..], epsilon = 1e-12);
         }
         let simpson = run::<_, _, 3, 1>(&well, Dla::of(Simpson), start, 4.0, steps);
-        [leapfrog, simpson].map(|run| run.nodes()[steps as usize].q)
+        [leapfrog, simpson].map(|run| run.nodes()[steps as usize].q.clone())
     };
     // Differences of successive halvings: second order without knowing the limit.
     let ends = [80, 160, 320, 640].map(end);

@@ -102,7 +102,7 @@ fn other_kinetic_terms_move_alike() {
     // The steps are others: only their limit is the same.
     let last = |kinetic| {
         let system = Particle { kinetic, ..Particle::FREE };
-        run::<_, _, 3, 1>(&Three::from(system), Dla::midpoint(), system.exact(0.0), 3.0, 20).nodes()[20].q
+        run::<_, _, 3, 1>(&Three::from(system), Dla::midpoint(), system.exact(0.0), 3.0, 20).nodes()[20].q.clone()
     };
     assert!((last(Kinetic::Quadratic)[0] - last(Kinetic::Quartic)[0]).abs() > 1e-5);
 }

@@ -13,7 +13,7 @@ pub fn run<Sys: System<N, M>, D: Discretisation<N, M>, const N: usize, const M: 
     (q, v): Place<N>,
     end: f64,
     steps: u64,
-) -> Trajectory<N, M> {
+) -> Trajectory {
     let schedule = Schedule { t0: 0.0, step: end / steps as f64, steps };
     let mut trajectory = Trajectory::every(1);
     drive(system, &mut method, &schedule, &mut State::new(q, v, system.angles()), &mut trajectory).unwrap();
@@ -29,7 +29,7 @@ pub fn errors<Sys: System<N, M>, D: Discretisation<N, M> + Copy, const N: usize,
 ) -> [[f64; 2]; 4] {
     [20, 40, 80, 160].map(|steps| {
         let mut errors = [0.0f64; 2];
-        let trajectory: Trajectory<N, M> = run(system, method, exact(0.0), end, steps);
+        let trajectory = run::<_, _, N, M>(system, method, exact(0.0), end, steps);
         for node in trajectory.nodes() {
             // Multipliers and basis keep the constraint at the nodes alike: a few roundings of velocities below 10.
             assert!(node.constraint <= 1e-14, "residual {:e} at t = {}", node.constraint, node.t);

@@ -53,6 +53,16 @@ pub fn sleigh_state(state: &State<3>) -> SleighState {
     SleighState::from_coordinates(&state.unwrapped(), state.v())
 }
 
+/// The state of a sleigh at a configuration and a velocity.
+pub fn sleigh_at(q: &[f64], v: &[f64]) -> SleighState {
+    SleighState::from_coordinates(&row(q), &row(v))
+}
+
+/// The first numbers of a list.
+pub fn row<const N: usize>(x: &[f64]) -> [f64; N] {
+    *x.first_chunk().unwrap()
+}
+
 /// The midpoint method by the closed map of this sleigh, in the basis, and with multipliers.
 pub fn midpoint_forms(sleigh: Sleigh) -> [(&'static str, Stepper<'static, 3, 1>); 3] {
     [

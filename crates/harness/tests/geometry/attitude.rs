@@ -1,6 +1,6 @@
 //! Attitude by spinning the rotor.
 
-use crate::geometry::{dla, run};
+use crate::geometry::run;
 use approx::assert_relative_eq;
 use dla::State;
 use lagrangian::System;
@@ -14,7 +14,7 @@ fn driven(offset: f64, strength: f64) -> [f64; 3] {
     let torque = TimeFunction::Sine { amplitude: strength, frequency: 1.0, phase: 0.0 };
     let system = Flywheel::new(sleigh, ROTOR, Some(torque)).unwrap();
     let mut state = State::new([0.0; 4], [0.0; 4], system.angles());
-    run(&system, dla, (std::f64::consts::TAU / 400.0, 400), &mut state, ());
+    run(&system, "dla", (std::f64::consts::TAU / 400.0, 400), &mut state, &mut ());
     let q = state.unwrapped();
     let v = state.v();
     let speed = SleighState::from_coordinates(&[q[0], q[1], q[2]], &[v[0], v[1], v[2]]).speed;

@@ -1,17 +1,17 @@
 use approx::assert_relative_eq;
-use dla::{Differentiable, Dla, OneStep, SeededMechanics, State};
-use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, StepLimit, differentiable};
-use harness::{Method, Rk4};
-use lagrangian::{System, With};
+use dla::{FullMechanics, Subject, has_derivatives};
+use harness::Method;
+use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, StepLimit};
+use lagrangian::With;
 use sleigh::effects::{Bowl, Drag, EggCrate, Slope, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, Sleigh, SleighState, TimeFunction};
 
 fn relative_equilibria<const N: usize, const M: usize>(
-    system: &dyn SeededMechanics<N, M>,
+    system: &dyn FullMechanics<N, M>,
     q: &[f64; N],
     v: &[f64; N],
-) -> Result<Vec<Equilibrium<N>>, EquilibriumError> {
-    harness::analysis::relative_equilibria(system, q, v).map(|all| all.found)
+) -> Result<Vec<Equilibrium>, EquilibriumError> {
+    harness::analysis::relative_equilibria(&Subject::new(system, &()), (N, M), q, v).map(|all| all.found)
 }
 
 fn sleigh() -> Sleigh {
@@ -22,17 +22,11 @@ fn start(speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
     SleighState { heading: 0.3, speed, turn_rate, ..SleighState::default() }.to_coordinates()
 }
 
-fn steps<'a, Sys: System<N, M>, Method: OneStep<N, M> + Clone + 'a, const N: usize, const M: usize>(
-    system: &'a Sys,
-    method: Method,
-) -> impl FnMut(f64, &State<N>) -> Option<State<N>> + 'a {
-    move |h, start| {
-        let mut end = *start;
-        method.clone().step(system, 0.0, h, &mut end).ok().map(|_| end)
-    }
+fn named(name: &str) -> Method {
+    Method::named(name, None).unwrap()
 }
 
-fn with_speed<const N: usize>(found: &[Equilibrium<N>], sign: f64) -> &Equilibrium<N> {
+fn with_speed(found: &[Equilibrium], sign: f64) -> &Equilibrium {
     found.iter().find(|e| e.xi[0] * sign > 0.0).unwrap()
 }
 
@@ -59,9 +53,8 @@ fn straight_motion_has_the_eigenvalues_of_the_book() {
         }
         assert_eq!(straight.stable, sign > 0.0);
 
-        let method = Dla::midpoint();
-        let mut step = steps(&sleigh, Dla::midpoint());
-        let mut map = DiscreteMap::new((&sleigh, (3, 1)), &method, &mut step);
+        let (subject, method) = (Subject::new(&sleigh, &()), named("dla"));
+        let map = DiscreteMap::new(&subject, (3, 1), &method);
         for h in [0.01, 0.3, 1.5] {
             let half = 0.5 * h * -rate;
             let mut expected = [(1.0 - half) / (1.0 + half), 1.0];
@@ -83,12 +76,9 @@ fn the_step_has_the_limit_of_its_method() {
     let (q, v) = start(1.2, 0.0);
     let found = relative_equilibria(&sleigh, &q, &v).unwrap();
     let straight = with_speed(&found, 1.0);
-    let method = Dla::midpoint();
-    let mut step = steps(&sleigh, Dla::midpoint());
-    let limit = DiscreteMap::new((&sleigh, (3, 1)), &method, &mut step).limit(0.05, straight);
-    assert!(matches!(limit, StepLimit::Beyond(h) if h > 100.0), "{limit:?}");
-    let mut step = steps(&sleigh, Rk4);
-    let limit = DiscreteMap::new((&sleigh, (3, 1)), &Rk4, &mut step).limit(0.05, straight);
+    let limit = |name| DiscreteMap::new(&Subject::new(&sleigh, &()), (3, 1), &named(name)).limit(0.05, straight);
+    assert!(matches!(limit("dla"), StepLimit::Beyond(h) if h > 100.0), "{:?}", limit("dla"));
+    let limit = limit("rk4");
     let rate = sleigh.spin_gain() * 1.2;
     // |1 - z + z^2/2 - z^3/6 + z^4/24| = 1, where the slope is 1.8; a size of one has the rounding of a double eigenvalue, 1.2e-7.
     assert_relative_eq!(limit.step().unwrap() * rate, 2.785_293_563_405_28, max_relative = 1e-7);
@@ -132,9 +122,7 @@ fn at_the_bottom_of_a_bowl_it_swings() {
         assert_relative_eq!(*z, x, epsilon = 1e-7);
     }
     assert!(rest.stable);
-    let method = Dla::midpoint();
-    let mut step = steps(&system, Dla::midpoint());
-    let map = DiscreteMap::new((&system, (3, 1)), &method, &mut step).spectrum(0.2, rest).unwrap();
+    let map = DiscreteMap::new(&Subject::new(&system, &()), (3, 1), &named("dla")).spectrum(0.2, rest).unwrap();
     assert!(map.iter().all(|[re, im]| (re.hypot(*im) - 1.0).abs() < 1e-7), "{map:?}");
 }
 
@@ -185,7 +173,7 @@ fn what_has_none_says_so_in_full() {
     check_what_has_none(&With { body: sleigh(), effects: Slope::new([0.3, 0.0]).unwrap() });
 }
 
-fn check_what_has_none(restless: &dyn SeededMechanics<3, 1>) {
+fn check_what_has_none(restless: &dyn FullMechanics<3, 1>) {
     let (q, v) = start(1.0, 0.2);
     assert!(matches!(relative_equilibria(restless, &q, &v), Err(EquilibriumError::NoneFound { .. })));
     // At time zero its slope vanishes.
@@ -202,7 +190,6 @@ fn check_what_has_none(restless: &dyn SeededMechanics<3, 1>) {
 
 #[test]
 fn methods_that_are_not_differentiated_here_are_none() {
-    let named = |name| Method::named(name, None).unwrap();
-    let found = |name| -> Option<Box<dyn Differentiable<3, 1>>> { differentiable(&named(name)) };
-    assert!(found("dla").is_some() && found("rk4").is_some() && found("dop853").is_none());
+    let found = |name| has_derivatives(&named(name));
+    assert!(found("dla").is_ok() && found("rk4").is_ok() && found("dop853").is_err());
 }

@@ -1,4 +1,4 @@
-use crate::geometry::{gauss, run};
+use crate::geometry::run;
 use approx::assert_relative_eq;
 use dla::State;
 use lagrangian::System;
@@ -34,7 +34,7 @@ fn the_sinusoidal_gait_moves_by_a_bessel_function() {
         let [speed, turn_rate] = sinusoidal_gait(a, b, 2.0);
         let servo = Guided::<2>::servo(sleigh, speed, turn_rate).unwrap();
         let mut state = State::new([0.0; 3], [0.0, 0.0, 2.0 * b], System::<3, 3>::angles(&servo));
-        run(&servo, gauss, (PI / 64.0, 64), &mut state, ());
+        run(&servo, "gauss8", (PI / 64.0, 64), &mut state, &mut ());
         let [x, y, heading] = state.unwrapped();
         assert_relative_eq!(y, TAU * a * bessel(b), epsilon = 1e-10);
         assert!(x.abs() < 1e-10 && heading.abs() < 1e-10, "{x} {heading}");

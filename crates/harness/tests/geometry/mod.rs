@@ -8,32 +8,19 @@ mod gaits;
 mod parking;
 mod phase;
 
-use dla::{Dla, Gauss, Observer, OneStep, Piece, Schedule, State, drive_part, piece_by_piece};
-use lagrangian::{Piecewise, System};
+use dla::{AnyState, Observer, PiecewiseMechanics, Schedule, State, Subject};
+use harness::{Method, integrate_pieces};
 
 /// Runs a method on a system that may jump.
-fn run<Sys, Method, Obs, const N: usize, const M: usize>(
-    system: &Sys,
-    method: impl Fn() -> Method,
+fn run<const N: usize, const M: usize>(
+    system: &impl PiecewiseMechanics<N, M>,
+    method: &str,
     (step, steps): (f64, u64),
     state: &mut State<N>,
-    mut observer: Obs,
-) where
-    Sys: System<N, M> + Piecewise,
-    Method: OneStep<N, M>,
-    Obs: Observer<N, M>,
-{
-    let schedule = Schedule { t0: 0.0, step, steps };
-    piece_by_piece(system, &schedule, state, |piece, Piece { steps, schedule }, state| {
-        drive_part(piece, &mut method(), &schedule, steps, state, &mut observer)
-    })
-    .unwrap();
-}
-
-fn dla() -> Dla {
-    Dla::midpoint()
-}
-
-fn gauss() -> Gauss {
-    Gauss::new::<4>()
+    observer: &mut dyn Observer,
+) {
+    let (method, schedule) = (Method::named(method, None).unwrap(), Schedule { t0: 0.0, step, steps });
+    let mut moved = AnyState::from(*state);
+    integrate_pieces(&Subject::from(system), &method, &schedule, &mut moved, observer).unwrap();
+    *state = *moved.typed().unwrap();
 }

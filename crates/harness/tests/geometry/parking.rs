@@ -1,4 +1,4 @@
-use crate::geometry::{dla, run};
+use crate::geometry::run;
 use dla::{State, Trajectory};
 use lagrangian::System;
 use sleigh::parking::{Gap, Move, ParkingPlan};
@@ -51,8 +51,8 @@ fn check_pairs(pairs: u32) {
         let [speed, turn_rate] = plan.controls(1.0).unwrap();
         let servo = Guided::<2>::servo(sleigh, speed, turn_rate).unwrap();
         let mut state = State::new(start.to_coordinates().0, [0.0; 3], System::<3, 3>::angles(&servo));
-        let mut nodes = Trajectory::<3, 3>::every(1);
-        run(&servo, dla, (0.0625, 16 * plan.moves.len() as u64), &mut state, &mut nodes);
+        let mut nodes = Trajectory::every(1);
+        run(&servo, "dla", (0.0625, 16 * plan.moves.len() as u64), &mut state, &mut nodes);
         let end = SleighState::from_coordinates(&state.unwrapped(), state.v());
         worst = worst.max(distance(&end, &goal));
         slip = nodes.nodes().iter().fold(slip, |slip, node| slip.max(node.constraint));

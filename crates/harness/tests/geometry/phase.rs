@@ -1,4 +1,4 @@
-use crate::geometry::{gauss, run};
+use crate::geometry::run;
 use approx::assert_relative_eq;
 use dla::State;
 use harness::analysis::{Rounds, weighted_mean};
@@ -18,7 +18,7 @@ fn simulated(path: &ClosedPath, heading: f64, rounds: u64, steps: u64) -> Vec<f6
     let v = lagrangian::velocity_of::<_, _, 3, 3>(&system, 0.0, &q, &[0.0; 3]).unwrap();
     let mut state = State::new(q, v, System::<3, 3>::angles(&system));
     let mut turns = Rounds::new(2, steps);
-    run(&system, gauss, (path.period() / steps as f64, rounds * steps), &mut state, &mut turns);
+    run(&system, "gauss8", (path.period() / steps as f64, rounds * steps), &mut state, &mut turns);
     turns.each()
 }
 
@@ -197,7 +197,7 @@ fn the_blades_own_loop_leaves_nothing() {
     let mut state = State::new(q, v, System::<3, 3>::angles(&servo));
     for _ in 0..40 {
         let schedule = (period / 40.0, 1);
-        run(&servo, gauss, schedule, &mut state, ());
+        run(&servo, "gauss8", schedule, &mut state, &mut ());
         let [x, y, heading] = *state.q();
         let centre = [x + A * heading.cos(), y + A * heading.sin()];
         assert_relative_eq!(x.hypot(y), radius, epsilon = 1e-12);

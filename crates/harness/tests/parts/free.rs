@@ -1,7 +1,7 @@
 //! The free sleigh, in steps that nearly every method refuses, against the motion in closed form.
 
 use crate::parts::{BAR, EACH, Run, by, by_each, request, sleigh};
-use dla::{StepError, Substeps};
+use dla::{StepError, Subject, Substeps};
 use harness::Method;
 use sleigh::{Exact, SleighState};
 
@@ -89,7 +89,8 @@ fn step_lengths() {
     ends_right("dla, h = 1e12 s", &run, &exact, (1e12, 10));
     assert!(run.substeps.divided > 0 && run.substeps.parts < 1000, "{}", run.substeps.parts);
     // What would be taken for the motion: the mean spin is nothing, and no node says so but by its own.
-    let whole = harness::run(&sleigh(0.5), &Method::named("dla", None).unwrap(), &request(&start, (1e12, 10)), &mut ());
+    let (method, request) = (Method::named("dla", None).unwrap(), request(&start, (1e12, 10)));
+    let whole = harness::run(&Subject::from(&sleigh(0.5)), &method, &request, &mut ());
     assert!((whole.q[2] - exact.at(1e13).heading).abs() > 0.5);
 }
 
@@ -99,7 +100,7 @@ fn step_lengths() {
 fn what_needs_too_many_parts_says_so() {
     let start = SleighState { speed: 1.0, turn_rate: 0.3, ..SleighState::default() };
     let method = Method::named("dla4", None).unwrap().with_substeps(Substeps::new(53, 10_000));
-    let record = harness::run(&sleigh(0.5), &method, &request(&start, (1e12, 1)), &mut ());
+    let record = harness::run(&Subject::from(&sleigh(0.5)), &method, &request(&start, (1e12, 1)), &mut ());
     let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
     assert_eq!((why.tried, record.steps, failure.source), (10_000, 0, why.source));
     assert!(matches!(why.source, StepError::Closed(_)), "{why}");

@@ -3,9 +3,9 @@
 mod fields;
 mod free;
 
-use dla::{Node, Schedule, Substeps};
+use crate::common::sleigh_at;
+use dla::{Node, PiecewiseMechanics, Schedule, Subject, Substeps};
 use harness::{Method, Request, SubstepSummary, run_watched};
-use lagrangian::{Piecewise, System};
 use sleigh::{Sleigh, SleighState};
 
 /// The halves of every part agree to this part of the velocity. Ten parts of a turn that are wrong by that, all in the same sense,
@@ -14,30 +14,30 @@ const BAR: f64 = 1e-3;
 
 /// A run with steps that may be divided.
 struct Run {
-    nodes: Vec<Node<3, 1>>,
+    nodes: Vec<Node>,
     substeps: SubstepSummary,
 }
 
 impl Run {
     fn end(&self) -> SleighState {
-        self.nodes.last().map(|node| SleighState::from_coordinates(&node.q, &node.v)).unwrap()
+        self.nodes.last().map(|node| sleigh_at(&node.q, &node.v)).unwrap()
     }
 
     /// The speed or the spin at every node.
     fn seen(&self, of: fn(&SleighState) -> f64) -> Vec<f64> {
-        self.nodes.iter().map(|node| of(&SleighState::from_coordinates(&node.q, &node.v))).collect()
+        self.nodes.iter().map(|node| of(&sleigh_at(&node.q, &node.v))).collect()
     }
 }
 
-fn request(start: &SleighState, (step, steps): (f64, u64)) -> Request<3> {
+fn request(start: &SleighState, (step, steps): (f64, u64)) -> Request {
     let (q, v) = start.to_coordinates();
-    Request { schedule: Schedule { t0: 0.0, step, steps }, q, v, samples: 2 }
+    Request { schedule: Schedule { t0: 0.0, step, steps }, q: q.into(), v: v.into(), samples: 2 }
 }
 
 /// The run by the method of that name.
-fn by<Sys: System<3, 1> + Piecewise>(name: &str, system: &Sys, start: &SleighState, steps: (f64, u64)) -> Run {
+fn by(name: &str, system: &impl PiecewiseMechanics<3, 1>, start: &SleighState, steps: (f64, u64)) -> Run {
     let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
-    let made = run_watched::<3, 1>(system, &method, &request(start, steps), (&[], 1), Some(1), &mut ());
+    let made = run_watched(&Subject::from(system), &method, &request(start, steps), (&[], 1), Some(1), &mut ());
     assert!(made.record.failure.is_none(), "{name}: {:?}", made.record.failure);
     let nodes = made.trajectory.unwrap().nodes().to_vec();
     // The blade does not slip at any node, by more than rounding of the velocities there.
@@ -52,8 +52,8 @@ fn by<Sys: System<3, 1> + Piecewise>(name: &str, system: &Sys, start: &SleighSta
 const EACH: &[&str] = &["dla", "dla4", "gauss8", "energy4"];
 
 /// The runs by a method of each family.
-fn by_each<Sys: System<3, 1> + Piecewise>(
-    system: &Sys,
+fn by_each(
+    system: &impl PiecewiseMechanics<3, 1>,
     start: &SleighState,
     steps: (f64, u64),
 ) -> impl Iterator<Item = (&'static str, Run)> {

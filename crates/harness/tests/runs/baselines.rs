@@ -2,10 +2,9 @@
 
 use approx::assert_relative_eq;
 use dla::{
-    Derivative, Dla, Hint, NewtonError, NotANumber, OneStep, Schedule, State, StepError, SystemFunction, Variable,
-    drive,
+    Derivative, Dla, Dop853, Hint, ImplicitMidpoint, NewtonError, NotANumber, OneStep, Rk4, Rk4Projected, Rk4Reduced,
+    Schedule, State, StepError, SystemFunction, Variable, drive,
 };
-use harness::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System};
 use std::cell::Cell;
 

@@ -1,10 +1,10 @@
 //! Lyapunov exponents: of motions of which they are known, by both ways to differentiate a step, and of two strange attractors.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{FullMechanics, Gauss, Schedule, Sensitivity, State};
+use dla::{FullMechanics, Gauss, Schedule, Sensitivity, State, Subject, has_tangents};
 use harness::Method;
 use harness::analysis::{
-    Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, in_parallel, kaplan_yorke, lyapunov,
+    Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, kaplan_yorke, lyapunov,
 };
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System, With};
 use nalgebra::DMatrix;
@@ -60,8 +60,9 @@ pub(crate) fn exponents_by(
     (step, settle, steps): (f64, u64, u64),
 ) -> Lyapunov {
     let schedule = Schedule { t0: 0.0, step, steps };
-    let request = LyapunovRequest { schedule, settle, exponents: None, q, v };
-    let found = lyapunov((system, &()), &Method::named(name, None).unwrap(), &request, &mut ()).unwrap();
+    let request = LyapunovRequest { schedule, settle, exponents: None, q: q.into(), v: v.into() };
+    let (system, method) = (Subject::new(system, &()), Method::named(name, None).unwrap());
+    let found = lyapunov(&system, (3, 1), &method, &request, &mut ()).unwrap();
     assert!(found.failure.is_none(), "{:?}", found.failure);
     assert_relative_eq!(found.time, step * steps as f64, max_relative = 1e-12);
     found
@@ -296,15 +297,15 @@ fn what_has_no_exponents_says_why() {
         ("gni", None, "gni"),
         ("dop853", None, "chooses its steps"),
     ] {
-        let request = LyapunovRequest { schedule, settle: 0, exponents, q, v };
+        let request = LyapunovRequest { schedule, settle: 0, exponents, q: q.into(), v: v.into() };
         let method = Method::named(name, None).unwrap();
-        let error = lyapunov((&system, &()), &method, &request, &mut ()).unwrap_err();
+        let error = lyapunov(&Subject::new(&system, &()), (3, 1), &method, &request, &mut ()).unwrap_err();
         assert!(error.to_string().contains(told), "{error}");
         assert_eq!(has_tangents(&method).is_err(), matches!(error, LyapunovError::Sensitivity(_)), "{name}");
     }
     // The start of a run that fails keeps what it has: here nothing.
-    let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v: [f64::NAN; 3] };
+    let request = LyapunovRequest { schedule, settle: 0, exponents: None, q: q.into(), v: vec![f64::NAN; 3] };
     let method = Method::named("gauss8", None).unwrap();
-    let found = lyapunov((&system, &()), &method, &request, &mut ());
+    let found = lyapunov(&Subject::new(&system, &()), (3, 1), &method, &request, &mut ());
     assert!(found.unwrap().failure.is_some());
 }

@@ -2,7 +2,7 @@
 
 use super::{Particle, request};
 use approx::assert_relative_eq;
-use dla::Checkpoint;
+use dla::{Checkpoint, Subject};
 use harness::{Blocks, Drift, DriftVerdict, Method, Record, Request, Saving, run, run_saved};
 use std::f64::consts::TAU;
 
@@ -187,7 +187,7 @@ fn the_smaller_slope_wins_from_where_the_lines_meet() {
 }
 
 /// A run from checkpoint to checkpoint that ends where it is told to; its record and its last checkpoint.
-fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) -> (Record<3>, Checkpoint) {
+fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) -> (Record, Checkpoint) {
     struct Until(u64, Option<u64>);
     impl harness::Progress for Until {
         fn advance(&mut self, steps: u64) {
@@ -202,7 +202,8 @@ fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) 
     let mut save = |made: &Checkpoint| last = Checkpoint::from_text(&made.to_text()).unwrap();
     let mut saving = Saving { identity: &identity, from, every: Some(1 << 20), save: &mut save };
     let system = Particle::of(1.0);
-    let made = run_saved::<3, 1>(&system, &method, &request(steps, 0.05), &mut saving, None, &mut Until(0, stop));
+    let (system, mut until) = (Subject::from(&system), Until(0, stop));
+    let made = run_saved(&system, &method, &request(steps, 0.05), &mut saving, None, &mut until);
     (made.unwrap(), last)
 }
 
@@ -224,7 +225,7 @@ fn check_interrupted(steps: u64, stop: u64) {
     let made = stop.next_multiple_of(1 << 10);
     assert_eq!((half.interrupted, half.steps, whole.interrupted, whole.steps), (true, made, false, steps));
     let (rest, _) = part("dla", steps, Some(&middle), None);
-    let timeless = |record: Record<3>| Record { wall_seconds: 0.0, ..record };
+    let timeless = |record: Record| Record { wall_seconds: 0.0, ..record };
     assert_eq!(timeless(rest), timeless(whole.clone()));
     // From its end no step is left.
     let (again, _) = part("dla", steps, Some(&end), None);
@@ -235,8 +236,8 @@ fn check_interrupted(steps: u64, stop: u64) {
 #[test]
 fn a_run_is_as_far_from_its_leaf_as_its_method_goes() {
     let system = Particle { leaf: true, ..Particle::of(1.0) };
-    let request = Request { q: [0.1, 0.2, 0.02], v: [0.9, 0.7, 0.2 * 0.7], ..request(2000, 0.05) };
-    let record = |name: &str| run(&system, &Method::named(name, None).unwrap(), &request, &mut ());
+    let request = Request { q: vec![0.1, 0.2, 0.02], v: vec![0.9, 0.7, 0.2 * 0.7], ..request(2000, 0.05) };
+    let record = |name: &str| run(&Subject::from(&system), &Method::named(name, None).unwrap(), &request, &mut ());
     // The chord of the midpoint rule has dz = y dy with the mean of y: exactly the change of y^2/2. The rest is rounding:
     // of z, of size one, at each of the nodes.
     let (dla, rk4) = (record("dla"), record("rk4"));

@@ -1,16 +1,17 @@
 //! Ensembles: the same rows on any number of threads and from any member on, and summaries of runs that end early too.
 
+use crate::common::sleigh_at;
 use approx::assert_abs_diff_eq;
-use dla::Schedule;
+use dla::{Schedule, Subject};
 use harness::Method;
 use harness::ensemble::{Summary, in_order, summarise};
 use lagrangian::{With, velocity_of};
-use sleigh::{Sleigh, SleighState};
+use sleigh::Sleigh;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-fn words(_t: f64, q: &[f64; 3], v: &[f64; 3]) -> Vec<f64> {
-    let state = SleighState::from_coordinates(q, v);
+fn words(_t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+    let state = sleigh_at(q, v);
     vec![state.x, state.speed, state.turn_rate]
 }
 
@@ -21,7 +22,7 @@ fn member(k: u64) -> Summary {
     let v = velocity_of(&system, 0.0, &q, &xi).unwrap();
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
     let method = Method::named("dla", None).unwrap();
-    let (summary, failure) = summarise(&system, &method, (q, v), (&schedule, 10), &words);
+    let (summary, failure) = summarise(&Subject::from(&system), &method, (&q, &v), (&schedule, 10), &words);
     assert!(failure.is_none());
     summary.unwrap()
 }
@@ -137,8 +138,8 @@ fn a_run_that_fails_is_summed_up_as_far_as_it_goes() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
     let schedule = Schedule { t0: 0.0, step: 2.9, steps: 10 };
     let method = Method::named("dla", None).unwrap();
-    let start = ([0.0; 3], [-1.5, 0.0, 1e-3]);
-    let (summary, failure) = summarise(&system, &method, start, (&schedule, 1), &words);
+    let start: (&[f64], &[f64]) = (&[0.0; 3], &[-1.5, 0.0, 1e-3]);
+    let (summary, failure) = summarise(&Subject::from(&system), &method, start, (&schedule, 1), &words);
     let (summary, failure) = (summary.unwrap(), failure.unwrap());
     assert_abs_diff_eq!(summary.t, failure.time, epsilon = 0.0);
     assert!(summary.end.iter().all(|x| x.is_finite()));

@@ -1,8 +1,7 @@
 //! What flow and methods do to areas of starts of the free sleigh, whose invariant measure is `du domega / |omega|`.
 
 use approx::assert_abs_diff_eq;
-use dla::{Composition, Differentiable, Dla, Gauss, Lobatto, OneStep, Sensitivity, State};
-use harness::Rk4Reduced;
+use dla::{Mechanism, Method, Subject};
 use harness::analysis::{enclosed_area, measure_defect};
 use proptest::prelude::*;
 use sleigh::{Exact, Sleigh, SleighState};
@@ -61,33 +60,28 @@ fn no_curve_no_area() {
 }
 
 /// `ln (rho(z1) |det D Phi| / rho(z0))` of one step, with `rho = 1/|omega|`.
-fn defect<Method>(mut method: Method, h: f64) -> f64
-where
-    Method: OneStep<3, 1> + Differentiable<3, 1>,
-{
+fn defect(method: &Method, h: f64) -> f64 {
     let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let system = Subject::new(&sleigh, &());
     let (q, v) = SleighState { speed: -0.6, turn_rate: 1.1, ..SleighState::default() }.to_coordinates();
-    let mut state = State::new(q, v, [false, false, true]);
-    let derivative = Sensitivity::of(&sleigh).step(&mut method, 0.0, h, &mut state).unwrap();
-    measure_defect(&derivative, [-v[2].abs().ln(), -state.v()[2].abs().ln()]).unwrap()
+    let start = system.state(&q, &v);
+    let (mut integrator, mut end) = (system.integrator(method), start.clone());
+    let report = integrator.step(0.0, h, &mut end).unwrap();
+    let derivative = system.step_derivative(method, (0.0, h), [&start, &end], report).unwrap();
+    measure_defect(&derivative, [-v[2].abs().ln(), -end.v()[2].abs().ln()])
 }
 
 /// Every method keeps the measure to its order, or better: the defect of a step is `O(h^(p+1))`, and not zero.
 #[test]
 fn the_defect_of_each_method() {
-    fn row<Method>(name: &str, method: &Method, order: f64, h: f64)
-    where
-        Method: OneStep<3, 1> + Differentiable<3, 1> + Clone,
+    for (name, order, h) in
+        [("dla", 2.0, 0.1), ("dla4", 4.0, 0.2), ("lobatto3", 4.0, 0.2), ("gauss4", 4.0, 0.6), ("rk4-reduced", 4.0, 0.2)]
     {
-        let [coarse, fine] = [h, 0.5 * h].map(|h| defect(method.clone(), h).abs());
+        let method = Method::named(name, None).unwrap();
+        let [coarse, fine] = [h, 0.5 * h].map(|h| defect(&method, h).abs());
         let measured = (coarse / fine).log2();
         println!("{name:12} h = {h}: {coarse:.1e}, order of the defect {measured:.2}");
         assert!(fine > 1e-14, "{name}: nothing to see, {fine:e}");
         assert!(measured > order + 0.7, "{name}: {measured}");
     }
-    row("dla", &Dla::midpoint(), 2.0, 0.1);
-    row("dla4", &Composition::suzuki4(Dla::midpoint()), 4.0, 0.2);
-    row("lobatto3", &Lobatto::<3>::new(), 4.0, 0.2);
-    row("gauss4", &Gauss::new::<2>(), 4.0, 0.6);
-    row("rk4-reduced", &Rk4Reduced, 4.0, 0.2);
 }

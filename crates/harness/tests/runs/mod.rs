@@ -2,7 +2,6 @@
 
 mod baselines;
 mod chaos;
-mod charts;
 mod diverged;
 mod drift;
 mod ensembles;
@@ -20,7 +19,7 @@ mod watched;
 mod work;
 
 use approx::assert_relative_eq;
-use dla::Schedule;
+use dla::{Schedule, Subject};
 use harness::{METHODS, Method, MethodError, MethodInfo, MethodKind, Request, Trend, run};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
@@ -66,15 +65,16 @@ impl Piecewise for Particle {
     }
 }
 
-fn request(steps: u64, step: f64) -> Request<3> {
-    Request { schedule: Schedule { t0: 0.0, step, steps }, q: [0.1, 0.2, 0.3], v: [0.9, 0.7, 0.2 * 0.9], samples: 10 }
+fn request(steps: u64, step: f64) -> Request {
+    let (q, v) = (vec![0.1, 0.2, 0.3], vec![0.9, 0.7, 0.2 * 0.9]);
+    Request { schedule: Schedule { t0: 0.0, step, steps }, q, v, samples: 10 }
 }
 
 #[test]
 fn a_record_tells_of_its_run() {
     let mut told = 0;
     let method = Method::named("dla", None).unwrap();
-    let record = run(&Particle::of(1.0), &method, &request(95, 0.05), &mut |steps| told += steps);
+    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(95, 0.05), &mut |steps| told += steps);
     assert_eq!((record.steps, told), (95, 95));
     assert_relative_eq!(record.t, 95.0 * 0.05);
     assert!(record.failure.is_none() && record.wall_seconds > 0.0);
@@ -90,7 +90,8 @@ fn a_record_tells_of_its_run() {
 
 #[test]
 fn explicit_methods_have_no_newton() {
-    let record = run(&Particle::of(1.0), &Method::named("rk4", None).unwrap(), &request(20, 0.05), &mut ());
+    let method = Method::named("rk4", None).unwrap();
+    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(20, 0.05), &mut ());
     assert_eq!((record.newton.mean.to_bits(), record.newton.max), (0, 0));
     assert!(record.constraint_max > 0.0);
 }
@@ -99,7 +100,7 @@ fn explicit_methods_have_no_newton() {
 #[test]
 fn a_refusal_is_a_record_with_its_reason() {
     let method = Method::named("rk4-reduced", None).unwrap();
-    let record = run(&Particle::of(1.0), &method, &request(20, 0.05), &mut ());
+    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(20, 0.05), &mut ());
     let failure = record.failure.unwrap();
     assert_eq!((failure.step, record.steps), (1, 0));
     assert!(failure.to_string().contains("basis"), "{failure}");
@@ -109,7 +110,8 @@ fn a_refusal_is_a_record_with_its_reason() {
 #[test]
 fn a_run_ends_where_the_numbers_do() {
     let system = Particle { basis: true, ..Particle::of(0.0) };
-    let at_the_end = |step| Request { q: [f64::MAX, 0.0, 0.0], v: [1.0, 0.0, 0.0], ..request(2, step) };
+    let system = Subject::from(&system);
+    let at_the_end = |step| Request { q: vec![f64::MAX, 0.0, 0.0], v: vec![1.0, 0.0, 0.0], ..request(2, step) };
     for info in general() {
         let method = Method::named(info.name, None).unwrap();
         let record = run(&system, &method, &at_the_end(1e293), &mut ());

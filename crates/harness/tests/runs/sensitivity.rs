@@ -1,7 +1,9 @@
 //! The derivatives of the baselines, against closed forms and extrapolated differences.
 
-use dla::{Differentiable, OneStep, Sensitivity, SensitivityError, State, Tangent, Variation};
-use harness::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
+use dla::{
+    Differentiable, Dop853, ImplicitMidpoint, OneStep, Rk4, Rk4Projected, Rk4Reduced, Sensitivity, SensitivityError,
+    State, Tangent, Variation,
+};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use std::array::from_fn;
 

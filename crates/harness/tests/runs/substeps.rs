@@ -1,7 +1,7 @@
 //! Runs whose steps may be made in parts: measured, watched, saved, stopped, and those of trains.
 
 use super::{Particle, families, general, request};
-use dla::{Checkpoint, Event, Substeps, Trajectory};
+use dla::{Checkpoint, Event, Subject, Substeps, Trajectory};
 use harness::{Method, MethodInfo, Progress, Record, Request, Saving, run, run_saved, run_watched};
 
 fn in_parts(name: &str) -> Method {
@@ -13,7 +13,7 @@ fn system() -> Particle {
 }
 
 /// All but the time and what was divided.
-fn told(record: &Record<3>) -> String {
+fn told(record: &Record) -> String {
     format!("{:?}", Record { wall_seconds: 0.0, substeps: None, ..record.clone() })
 }
 
@@ -32,9 +32,9 @@ fn steps_that_are_too_long_are_made_in_parts_in_full() {
 /// `fine` short ones.
 fn check_long_steps(names: &[&str], steps: u64, fine: u64) {
     let short = request(steps * fine, 0.5 / fine as f64);
-    let right = run(&system(), &Method::named("gauss8", None).unwrap(), &short, &mut ());
+    let right = run(&Subject::from(&system()), &Method::named("gauss8", None).unwrap(), &short, &mut ());
     for name in names {
-        let record = run(&system(), &in_parts(name), &request(steps, 0.5), &mut ());
+        let record = run(&Subject::from(&system()), &in_parts(name), &request(steps, 0.5), &mut ());
         assert!(record.failure.is_none(), "{name}: {:?}", record.failure);
         let substeps = record.substeps.unwrap();
         assert_eq!((record.steps, substeps.divided, substeps.undivided), (steps, steps, None), "{name}");
@@ -62,6 +62,7 @@ fn where_nothing_is_divided_no_bit_is_changed_at_length() {
 /// Steps that resolve the motion are those of a run that may divide none, to the last bit.
 fn check_undivided(methods: impl Iterator<Item = &'static MethodInfo>, steps: u64) {
     let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(steps, 0.01));
+    let system = Subject::from(&system);
     for info in methods {
         let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request, &mut ());
         let record = run(&system, &in_parts(info.name), &request, &mut ());
@@ -86,16 +87,16 @@ fn saved(
     step: f64,
     from: Option<&Checkpoint>,
     progress: &mut dyn Progress,
-) -> (Record<3>, Vec<Checkpoint>) {
+) -> (Record, Vec<Checkpoint>) {
     let mut all = Vec::new();
     let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
     let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(every), save: &mut save };
-    let made = run_saved::<3, 1>(&system(), method, &request(steps, step), &mut saving, None, progress);
+    let made = run_saved(&Subject::from(&system()), method, &request(steps, step), &mut saving, None, progress);
     (made.unwrap(), all)
 }
 
 /// All but the time.
-fn bits(record: &Record<3>) -> String {
+fn bits(record: &Record) -> String {
     format!("{:?}", Record { wall_seconds: 0.0, ..record.clone() })
 }
 
@@ -116,7 +117,7 @@ fn check_checkpoints(names: &[&str], length: Length) {
         // Some of whose steps are divided: those of order 8 may be longer.
         let step = if name == "gauss8" { 0.6 } else { 0.15 };
         let (whole, checkpoints) = saved(&method, length, step, None, &mut ());
-        assert_eq!(bits(&whole), bits(&run(&system(), &method, &request(length.0, step), &mut ())), "{name}");
+        assert_eq!(bits(&whole), bits(&run(&Subject::from(&system()), &method, &request(length.0, step), &mut ())), "{name}");
         assert!(name == "dop853" || whole.substeps.unwrap().divided > 0, "{name}");
         assert_eq!(checkpoints.len() as u64, length.0.div_ceil(length.1), "{name}");
         for checkpoint in &checkpoints {
@@ -161,9 +162,9 @@ fn events_are_looked_for_in_every_part_in_full() {
 /// A step in which the well is crossed many times: every crossing is found, as in short steps, `fine` for each; and where the first ends the
 /// run, at `end`, it ends there.
 fn check_events((steps, step): (u64, f64), fine: u64, end: f64) {
-    let crossing = [Event::new("y", |_, state: &dla::State<3>| state.q()[1])];
-    let watched = |method: &Method, request: &Request<3>, events: &[Event<'_, 3>]| {
-        run_watched::<3, 1>(&system(), method, request, (events, 4), Some(1), &mut ())
+    let crossing = [Event::new("y", |_, q, _| q[1])];
+    let watched = |method: &Method, request: &Request, events: &[Event<'_>]| {
+        run_watched(&Subject::from(&system()), method, request, (events, 4), Some(1), &mut ())
     };
     let right = watched(&Method::named("gauss8", None).unwrap(), &request(steps * fine, step / fine as f64), &crossing);
     // A crossing takes less than half a second.
@@ -176,7 +177,7 @@ fn check_events((steps, step): (u64, f64), fine: u64, end: f64) {
         assert_eq!(one.k, (one.t / step).floor() as u64);
     }
 
-    let last = [Event::new("x", |_, state: &dla::State<3>| state.q()[0] - end).terminal()];
+    let last = [Event::new("x", |_, q, _| q[0] - end).terminal()];
     let ended = watched(&in_parts("dla4"), &request(steps, step), &last);
     assert!(ended.record.failure.is_none() && (ended.record.q[0] - end).abs() < 1e-12, "{:?}", ended.record);
     assert_eq!(ended.record.t.to_bits(), ended.crossings[0].t.to_bits());
@@ -188,13 +189,13 @@ fn check_events((steps, step): (u64, f64), fine: u64, end: f64) {
 #[test]
 fn a_step_that_cannot_be_divided_so_far_is_a_failure() {
     let few = Method::named("dla", None).unwrap().with_substeps(Substeps::new(1, 10));
-    let record = run(&system(), &few, &request(20, 0.5), &mut ());
+    let record = run(&Subject::from(&system()), &few, &request(20, 0.5), &mut ());
     let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
     assert_eq!((failure.step, failure.time, record.steps, failure.source), (1, 0.0, 0, why.source));
     assert_eq!((why.tried, why.time, why.part), (1, 0.0, 0.25));
     assert_eq!((record.q, record.energy.work), (request(20, 0.5).q, 0.0));
     // What no shorter step mends is not tried.
-    let refused = run(&Particle::of(1.0), &in_parts("rk4-reduced"), &request(20, 0.5), &mut ());
+    let refused = run(&Subject::from(&Particle::of(1.0)), &in_parts("rk4-reduced"), &request(20, 0.5), &mut ());
     assert!(refused.refusal().is_some() || refused.failure.is_some());
     assert_eq!(refused.substeps.unwrap().undivided, None);
 }

@@ -3,7 +3,7 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use assembly::AssemblyState;
 use assembly::parts::{Trailer, Train};
-use dla::{Checkpoint, Schedule};
+use dla::{Checkpoint, Schedule, Subject};
 use harness::{
     Assembled, AssemblyNodes, Method, Request, Saving, assembly_end, recommend_assembly, run_assembly,
     run_assembly_saved,
@@ -53,7 +53,8 @@ where
     for &name in names {
         let own = made(&alone, name, &start);
         let method = Method::named(name, None).unwrap();
-        let fixed = harness::run(system, &method, &Request { schedule: SCHEDULE, q, v, samples: 10 }, &mut ());
+        let request = Request { schedule: SCHEDULE, q: q.into(), v: v.into(), samples: 10 };
+        let fixed = harness::run(&Subject::from(system), &method, &request, &mut ());
         assert!(fixed.failure.is_none(), "{name}: {:?}", fixed.failure);
         // A few units in the last place in each step.
         let rounding = 16.0 * 80.0 * f64::EPSILON * (1.0 + fixed.energy.work.abs());
@@ -245,11 +246,12 @@ fn check_flywheel(names: &[&str]) {
         let start = alone.start(&START, &[]);
         let fixed = Flywheel::new(lead(), 0.7, motor).unwrap();
         let ([x, y, heading], [vx, vy, rate]) = START.to_coordinates();
-        let (q, v) = ([x, y, heading, 0.0], [vx, vy, rate, 2.0]);
+        let (q, v) = (vec![x, y, heading, 0.0], vec![vx, vy, rate, 2.0]);
+        let request = Request { schedule: SCHEDULE, q, v, samples: 10 };
         for &name in names {
             let run = made(&alone, name, &start);
             let method = Method::named(name, None).unwrap();
-            let fixed = harness::run(&fixed, &method, &Request { schedule: SCHEDULE, q, v, samples: 10 }, &mut ());
+            let fixed = harness::run(&Subject::from(&fixed), &method, &request, &mut ());
             let rounding = 16.0 * 80.0 * f64::EPSILON * (10.0 + fixed.energy.work.abs());
             for i in 0..3 {
                 assert_abs_diff_eq!(run.end.unwrapped(i), fixed.q[i], epsilon = rounding);

@@ -3,8 +3,7 @@
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};
-use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps};
-use harness::analysis::has_tangents;
+use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps, has_tangents};
 use harness::{
     AssemblyEvent, AssemblyNodes, METHODS, Method, Progress, Saving, assembly_end, assembly_method, recommend_assembly,
     run_assembly, run_assembly_saved, run_assembly_watched,

@@ -2,7 +2,7 @@
 
 use crate::runs::chaos::{exponents, exponents_by};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::Schedule;
+use dla::{Schedule, Subject};
 use harness::Method;
 use harness::analysis::{
     Evidence, Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, PARTS, Undecided, lyapunov,
@@ -141,9 +141,9 @@ fn on_a_ridge_a_sleigh_runs_away_in_full() {
     let (ridge, start) = ridge();
     let by_gauss8 = |settle: u64, steps: u64, count: usize| {
         let schedule = Schedule { t0: 0.0, step: 0.05, steps };
-        let request = LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0, v: start.1 };
+        let request = LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0.into(), v: start.1.into() };
         let method = Method::named("gauss8", None).unwrap();
-        lyapunov((&ridge, &()), &method, &request, &mut ()).unwrap()
+        lyapunov(&Subject::new(&ridge, &()), (3, 1), &method, &request, &mut ()).unwrap()
     };
     // Later rounding takes the digits of all exponents but the largest, also before anything is counted.
     let one = by_gauss8(120, 1200, 1);
@@ -368,10 +368,10 @@ fn sums_that_differ_are_a_failure_in_full() {
 fn check_sums(steps: u64) {
     let (q, v) = straight(1.0);
     let schedule = Schedule { t0: 0.0, step: 0.05, steps };
-    let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v };
+    let request = LyapunovRequest { schedule, settle: 0, exponents: None, q: q.into(), v: v.into() };
     let method = Method::named("dla", None).unwrap();
     let system = Wrong(sleigh());
-    let failure = lyapunov((&system, &()), &method, &request, &mut ()).unwrap().failure;
+    let failure = lyapunov(&Subject::new(&system, &()), (3, 1), &method, &request, &mut ()).unwrap().failure;
     let Some(LyapunovFailure::Volumes { sums: [by_steps, by_flow], .. }) = failure else { panic!("{failure:?}") };
     assert_abs_diff_eq!(by_steps, -0.4, epsilon = 1e-3);
     assert_abs_diff_eq!(by_flow, -0.44, epsilon = 1e-12);

@@ -1,7 +1,7 @@
 //! Events of a method of the table that has steps of its own.
 
 use approx::assert_abs_diff_eq;
-use dla::{Event, Schedule, State};
+use dla::{Event, Schedule, Subject};
 use harness::{EVENT_SAMPLES, Method, Request, Watched, run_watched};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use std::f64::consts::{PI, TAU};
@@ -38,20 +38,20 @@ impl Piecewise for Spring {
 }
 
 /// From `x = 0` with `x' = 1`, so that `x = sin t`, in long steps.
-fn run(spring: Spring, (step, steps): (f64, u64), events: &[Event<'_, 2>]) -> Watched<2, 1> {
+fn run(spring: Spring, (step, steps): (f64, u64), events: &[Event<'_>]) -> Watched {
     let method = Method::named("dop853", None).unwrap();
     let schedule = Schedule { t0: 0.0, step, steps };
-    let request = Request { schedule, q: [0.0; 2], v: [1.0, 0.0], samples: 1 };
-    run_watched(&spring, &method, &request, (events, EVENT_SAMPLES), Some(1), &mut ())
+    let request = Request { schedule, q: vec![0.0; 2], v: vec![1.0, 0.0], samples: 1 };
+    run_watched(&Subject::from(&spring), &method, &request, (events, EVENT_SAMPLES), Some(1), &mut ())
 }
 
 const FREE: Spring = Spring { jumps: false, push: 0.0 };
 
-fn half<'a>() -> Event<'a, 2> {
-    Event::new("x = 1/2", |_, state: &State<2>| state.q()[0] - 0.5)
+fn half<'a>() -> Event<'a> {
+    Event::new("x = 1/2", |_, q, _| q[0] - 0.5)
 }
 
-fn assert_times(watched: &Watched<2, 1>, expected: &[f64]) {
+fn assert_times(watched: &Watched, expected: &[f64]) {
     let found: Vec<f64> = watched.crossings.iter().map(|crossing| crossing.t).collect();
     assert_eq!(found.len(), expected.len(), "{found:?} for {expected:?}");
     // Errors of 1e-12 in each of some hundred steps, over a slope of .87.
@@ -78,7 +78,7 @@ fn long_steps_hide_no_event() {
 /// The run ends at the event, in the middle of a long step, and the nodes before it are those of the run without events.
 #[test]
 fn a_long_step_ends_at_an_event() {
-    let third = Event::new("x = -1/2", |_, state: &State<2>| state.q()[0] + 0.5).terminal();
+    let third = Event::new("x = -1/2", |_, q, _| q[0] + 0.5).terminal();
     let watched = run(FREE, (5.0, 12), &[half(), third]);
     let end = 7.0 * PI / 6.0;
     assert_times(&watched, &[PI / 6.0, 5.0 * PI / 6.0, end]);

@@ -2,7 +2,7 @@
 
 use assembly::parts::{Trailer, Train};
 use assembly::{Assembly, AssemblyState};
-use dla::Schedule;
+use dla::{Schedule, Subject};
 use harness::{AssemblyEvent, AssemblyNodes, Method, Record, Request, run_assembly, run_assembly_watched};
 use lagrangian::linear::larger;
 use lagrangian::{Piecewise, System, With};
@@ -40,7 +40,7 @@ fn schedule(step: f64, duration: f64) -> Schedule {
     Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
 }
 
-fn measured((train, start): &(Train, AssemblyState), name: &str, schedule: &Schedule) -> Record<3> {
+fn measured((train, start): &(Train, AssemblyState), name: &str, schedule: &Schedule) -> Record {
     let method = Method::named(name, None).unwrap();
     let run = run_assembly(&train.assembly, &method, schedule, start, schedule.steps, &mut ());
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
@@ -116,7 +116,8 @@ fn check_one_sleigh(names: &[&str], duration: f64) {
         for name in names {
             let method = Method::named(name, None).unwrap();
             let own = run_assembly(&alone, &method, &schedule, &start, 400, &mut ()).record;
-            let fixed = harness::run(system, &method, &Request { schedule, q, v, samples: 2 }, &mut ());
+            let request = Request { schedule, q: q.into(), v: v.into(), samples: 2 };
+            let fixed = harness::run(&Subject::from(system), &method, &request, &mut ());
             let (own, fixed) = (own.energy, fixed.energy);
             println!("{name} {:e} {:e} {:e} {:e}", own.work, fixed.work, own.max_error, fixed.max_error);
             assert_eq!(powered, fixed.work != 0.0);

@@ -2,8 +2,7 @@
 //! that continues the motion, which is followed here from a step of length zero on, independently.
 
 use crate::common::{sleigh, state_of};
-use dla::{Energy, Gauss, Gni, OneStep, State};
-use harness::ImplicitMidpoint;
+use dla::{Energy, Gauss, Gni, ImplicitMidpoint, OneStep, State};
 use lagrangian::linear::Lu;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::{Dual, Scalar};

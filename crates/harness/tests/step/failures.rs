@@ -72,7 +72,7 @@ fn a_failed_run_keeps_its_trajectory() {
     // Backward with a long step: the spin grows until half a turn a step is too much.
     let h = 2.9;
     let mut state = state_of(&sleigh, &start(-1.5, 1e-3));
-    let mut trajectory = Trajectory::<3, 1>::every(3);
+    let mut trajectory = Trajectory::every(3);
     let schedule = Schedule { t0: 1.0, step: h, steps: 1000 };
     let mut method = Dla::midpoint();
     let error = drive(&sleigh, &mut method, &schedule, &mut state, &mut trajectory).unwrap_err();

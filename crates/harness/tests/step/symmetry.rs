@@ -1,8 +1,7 @@
 //! Time reversal and rigid motions.
 
 use crate::common::{advanced, backward, midpoint_forms, sleigh, sleigh_state, sleighs, starts, state_of};
-use dla::{Dla, OneStep, State};
-use harness::Rk4;
+use dla::{Dla, OneStep, Rk4, State};
 use lagrangian::System;
 use proptest::prelude::*;
 use sleigh::{CentreOfMass, ClosedMap, Sleigh, SleighState};

@@ -1,9 +1,8 @@
 //! A row of the table, and what every row can be asked whatever its shape.
 
 use crate::table::shapes::{Known, Place};
-use dla::{Observer, RunError, Schedule, State, StepReport, View};
-use harness::{Method, integrate};
-use lagrangian::System;
+use dla::{Mechanism, Observer, Report, RunError, Schedule, Subject, View, make_steps};
+use harness::Method;
 use std::ops::ControlFlow;
 
 /// What the checks must know of a row.
@@ -94,9 +93,9 @@ pub trait Node {
     fn point(&self) -> Point;
 }
 
-struct Seen<'a, 'b, const N: usize, const M: usize>(&'a View<'b, N, M>);
+struct Seen<'a, 'b>(&'a View<'b>);
 
-impl<const N: usize, const M: usize> Node for Seen<'_, '_, N, M> {
+impl Node for Seen<'_, '_> {
     fn t(&self) -> f64 {
         self.0.t
     }
@@ -107,7 +106,7 @@ impl<const N: usize, const M: usize> Node for Seen<'_, '_, N, M> {
         self.0.constraint()
     }
     fn point(&self) -> Point {
-        Point { q: self.0.state.unwrapped().to_vec(), v: self.0.state.v().to_vec() }
+        Point { q: self.0.state.unwrapped(), v: self.0.state.v().to_vec() }
     }
 }
 
@@ -116,14 +115,27 @@ pub type Watch<'a> = &'a mut dyn FnMut(&dyn Node);
 
 struct Watching<'a>(Watch<'a>);
 
-impl<const N: usize, const M: usize> Observer<N, M> for Watching<'_> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Watching<'_> {
+    fn start(&mut self, node: &View<'_>) {
         (self.0)(&Seen(node));
     }
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         (self.0)(&Seen(node));
         ControlFlow::Continue(())
     }
+}
+
+/// Where a run of a method from a point ends, every node of which is shown.
+pub fn end(
+    system: &dyn Mechanism,
+    method: &Method,
+    from: &Point,
+    when: &Schedule,
+    watch: Watch<'_>,
+) -> Result<Point, RunError> {
+    let mut state = system.state(&from.q, &from.v);
+    make_steps(system, &mut *system.integrator(method), when, 0..when.steps, &mut state, &mut Watching(watch))?;
+    Ok(Point { q: state.unwrapped(), v: state.v().to_vec() })
 }
 
 /// Some rows.
@@ -173,10 +185,7 @@ macro_rules! case {
                 self.duration
             }
             fn run(&self, method: &Method, from: &Point, when: &Schedule, watch: Watch<'_>) -> Result<Point, RunError> {
-                let (q, v) = from.place();
-                let mut state = State::new(q, v, self.system.angles());
-                integrate(&self.system, method, when, &mut state, &mut Watching(watch))?;
-                Ok(Point::of(&(state.unwrapped(), *state.v())))
+                end(&Subject::from(&self.system), method, from, when, watch)
             }
             fn exact_from(&self, start: &Point, t: f64) -> Option<Point> {
                 self.system.exact_from(&start.place(), t).map(|place| Point::of(&place))

@@ -4,7 +4,7 @@
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::table::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
-use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, Scalar, System, With};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, Scalar, System, With};
 use sleigh::Sleigh;
 use test_systems::{
     ChaplyginBall, ContactOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer, RollingDisk,
@@ -69,6 +69,12 @@ macro_rules! shape {
             }
             fn reduced(&self) -> impl Reduced<$n, $m> {
                 self
+            }
+        }
+
+        impl Piecewise for $name {
+            fn piece(&self, _t: f64) -> Self {
+                *self
             }
         }
 

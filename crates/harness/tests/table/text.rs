@@ -1,31 +1,32 @@
 //! A row written as text moves as the row in Rust, by every method.
 
-use crate::table::case::{Point, Rows};
+use crate::table::case::{self, Point, Rows};
 use crate::table::rows::{kinds, rows, table};
 use crate::table::texts;
 use crate::table::tools::{Methods, all_methods, method, methods, refuses};
-use dla::{Mechanics, RunError, Schedule, State, drive};
+use dla::{Mechanism, RunError, Schedule};
 use harness::{METHODS, Method};
 use std::sync::Arc;
-use text::{AnyText, TextModel, TextStart, Words, with_text};
+use text::{TextMechanics, TextModel, TextStart, Words, started};
 
 /// The system of a text, from this start.
-fn system(words: &Words, start: &Point) -> AnyText {
+fn system(words: &Words, start: &Point) -> Box<dyn TextMechanics> {
     let start = TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() };
-    AnyText::new(&Arc::new(TextModel::new(words).unwrap()), &start).unwrap()
+    started(&Arc::new(TextModel::new(words).unwrap()), &start).unwrap()
+}
+
+/// A point with the coordinates that fill up a shape, at rest at zero.
+fn filled(system: &dyn Mechanism, point: &Point) -> Point {
+    let Point { mut q, mut v } = point.clone();
+    [&mut q, &mut v].map(|x| x.resize(system.size().n, 0.0));
+    Point { q, v }
 }
 
 /// Where a run of the text ends.
-fn end<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    method: &Method,
-    (q, v): ([f64; N], [f64; N]),
-    schedule: &Schedule,
-    places: usize,
-) -> Result<Point, RunError> {
-    let mut state = State::new(q, v, system.angles());
-    drive(system, &mut *method.stepper(), schedule, &mut state, ())?;
-    Ok(Point { q: state.unwrapped()[..places].to_vec(), v: state.v()[..places].to_vec() })
+fn end(system: &dyn Mechanism, method: &Method, start: &Point, schedule: &Schedule) -> Result<Point, RunError> {
+    let Point { mut q, mut v } = case::end(system, method, &filled(system, start), schedule, &mut |_| {})?;
+    [&mut q, &mut v].map(|x| x.truncate(start.q.len()));
+    Ok(Point { q, v })
 }
 
 /// The text and the row, by every one of the methods that takes the row, through so many steps, of which `whole` make the row's time; how
@@ -37,7 +38,6 @@ fn same(rows: &Rows, methods: &Methods, whole: u64, steps: u64) -> [u32; 2] {
     for case in rows {
         let Some(words) = texts::of(case.name()) else { continue };
         let (start, facts) = (case.start(), case.facts());
-        let places = start.q.len();
         let text = system(&words, &start);
         let schedule = Schedule { t0: 0.0, step: case.duration() / whole as f64, steps };
         for info in methods.iter().filter(|info| refuses(info, facts).is_none()) {
@@ -45,9 +45,7 @@ fn same(rows: &Rows, methods: &Methods, whole: u64, steps: u64) -> [u32; 2] {
             let Ok(rust) = case.run(&method, &start, &schedule, &mut |_| {}) else { continue };
             let away = Point { q: start.q.iter().map(|x| x * (1.0 + f64::EPSILON)).collect(), v: start.v.clone() };
             let near = case.run(&method, &away, &schedule, &mut |_| {}).unwrap();
-            let there =
-                with_text!(&text, started => end(&*started.system, &method, (started.q, started.v), &schedule, places))
-                    .unwrap();
+            let there = end(&*text.mechanism(), &method, &start, &schedule).unwrap();
             let (apart, size) = (rust.distance(&there), rust.size());
             // As many roundings as there are steps add up as their square root does, each grown at most as the one at the start.
             let grown = rust.distance(&near).max(f64::EPSILON * size);
@@ -95,11 +93,11 @@ fn derived(rows: &Rows, duration: Option<f64>, steps: fn(f64) -> u64, fine: u64)
         words.basis.clear();
         systems += 1;
         let (start, facts) = (case.start(), case.facts());
-        let (places, duration) = (start.q.len(), duration.unwrap_or_else(|| case.duration()));
+        let duration = duration.unwrap_or_else(|| case.duration());
         let text = system(&words, &start);
         let run = |name: &str, steps: u64| {
             let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
-            with_text!(&text, started => end(&*started.system, &method(name), (started.q, started.v), &schedule, places))
+            end(&*text.mechanism(), &method(name), &start, &schedule)
         };
         let reference = case.end_after(duration, &method("gauss16"), fine).unwrap();
         for (name, order) in [("dla", 2.0), ("gauss4", 4.0), ("rk4-reduced", 4.0), ("energy4", 4.0)] {
@@ -113,14 +111,11 @@ fn derived(rows: &Rows, duration: Option<f64>, steps: fn(f64) -> u64, fine: u64)
             // The next terms of the expansion are some tenths of the first at these steps; below 1e-11 the reference counts.
             assert!((found - order).abs() < 0.5 || near < 1e-11, "{}, {name}: order {found}, {far:e}", case.name());
             seen += u32::from(near > 1e-11);
-            let kept = with_text!(&text, started => {
-                let system = started.system.smooth_piece(duration);
-                let place = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
-                let (q, v) = (place(&fine.q), place(&fine.v));
-                let slip = system.residual(duration, &q, &v).iter().fold(0.0, |most: f64, slip| most.max(slip.abs()));
-                let first = started.system.smooth_piece(0.0).energy(0.0, &started.q, &started.v);
-                [slip, (system.energy(duration, &q, &v) - first).abs()]
-            });
+            let system = text.mechanism();
+            let (start, fine) = (filled(&*system, &start), filled(&*system, &fine));
+            let slip = system.largest_residual(duration, &fine.q, &fine.v);
+            let energies = [(0.0, &start), (duration, &fine)].map(|(t, Point { q, v })| system.energy(t, q, v));
+            let kept = [slip, (energies[1] - energies[0]).abs()];
             assert!(kept[0] < 1e-13, "{}, {name}: slips by {:e}", case.name(), kept[0]);
             if name == "energy4" && !facts.forced {
                 assert!(kept[1] < 1e-12, "{}, {name}: energy {:e}", case.name(), kept[1]);
@@ -154,9 +149,7 @@ fn another_parameter_is_seen() {
     let text = system(&words, &start);
     let schedule = Schedule { t0: 0.0, step: 0.02, steps: 200 };
     let rust = case.run(&method("dla"), &start, &schedule, &mut |_| {}).unwrap();
-    let there =
-        with_text!(&text, started => end(&*started.system, &method("dla"), (started.q, started.v), &schedule, 3))
-            .unwrap();
+    let there = end(&*text.mechanism(), &method("dla"), &start, &schedule).unwrap();
     let apart = rust.distance(&there);
     assert!(apart > 1e-11 && apart < 1e-7, "{apart:e}");
 }
