@@ -257,7 +257,7 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Prov
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
         facts,
-        costs: measured.curves.iter().map(drawn).collect(),
+        costs: Some(measured.curves.iter().map(drawn).collect()),
         numbers: vec![
             Numbers { ending: "csv", text: precision_csv::text(&measured.curves) },
             Numbers { ending: "csv-metadata.json", text: provenance.document(&csv, precision_csv::described()) },

@@ -1,6 +1,5 @@
 //! Errors against what they cost, on two logarithmic axes.
 
-use super::SceneReport;
 use super::canvas::{Anchor, Canvas, Shape, text_width};
 use super::figure::{Axis, Figure, LegendEntry, SIZE};
 use super::frame::{Frame, Scale, Span};
@@ -39,7 +38,7 @@ pub struct CostPoint {
 }
 
 /// Draws the errors against the time of a run, where they fall to the right, or against the step, where they fall to the left.
-pub(crate) fn picture(scene: &SceneReport, name: &str, time: bool) -> Figure {
+pub(crate) fn picture(costs: &[CostCurve], heading: &str, name: &str, time: bool) -> Figure {
     let (what, across, caption) = if time {
         let caption = "What accuracy costs: the error at the end against the time of a run. A point further down is more \
             exact, one further left is faster. The broad band joins the points that no other point beats in both; thin \
@@ -51,13 +50,13 @@ pub(crate) fn picture(scene: &SceneReport, name: &str, time: bool) -> Figure {
     let shown = |point: &CostPoint| Some([if time { point.seconds } else { point.step? }, point.error]);
     let axis = |axis: usize, name: &str, most: f64| {
         let scale = Scale::Decades(f64::NEG_INFINITY);
-        let points = scene.costs.iter().flat_map(|curve| &curve.points).filter_map(shown);
+        let points = costs.iter().flat_map(|curve| &curve.points).filter_map(shown);
         let span = Span::of(points.map(|point| scale.of(point[axis]))).unwrap_or(Span { lo: -1.0, hi: 0.0 });
         let span = whole_decades(span, 0.02);
         Axis { name: name.to_owned(), span, scale, ticks: decades(span, most, 0.0) }
     };
     let [x, y] = [axis(0, across, 9.0), axis(1, "error at the end [m or rad]", 12.0)];
-    let curves = || scene.costs.iter().enumerate();
+    let curves = || costs.iter().enumerate();
     let drawn = curves().filter(|(_, curve)| curve.points.iter().any(|point| shown(point).is_some()));
     let legend: Vec<LegendEntry<'_>> = drawn.map(|(k, curve)| (Ink::Method(k), curve.label.as_str())).collect();
     let left = margin(&y.ticks);
@@ -88,7 +87,7 @@ pub(crate) fn picture(scene: &SceneReport, name: &str, time: bool) -> Figure {
         }
     }
     tips.into_iter().for_each(|tip| figure.canvas.draw(tip, Ink::Text, 1.0));
-    let title = format!("{}: error against {what}", scene.title);
+    let title = format!("{heading}: error against {what}");
     figure.named(format!("{name}-{what}"), title, caption.to_owned())
 }
 

@@ -84,7 +84,7 @@ pub struct SceneReport {
     /// What else is shown against time, a panel below the other, as the picture `NAME-run`.
     pub figure: Option<Sheet>,
     /// What accuracy costs, method by method: the diagrams `NAME-time` and `NAME-step` in place of all other pictures.
-    pub costs: Vec<CostCurve>,
+    pub costs: Option<Vec<CostCurve>>,
     /// Files of numbers to put beside the page as `NAME.ENDING`.
     pub numbers: Vec<Numbers>,
 }
@@ -206,13 +206,14 @@ pub fn write(report: &Report, directory: &Path) -> Result<Vec<PathBuf>, ReportEr
     let mut scenes = Vec::with_capacity(names.len());
     let mut contents = vec![(page::PAGE.to_owned(), Vec::new())];
     for (scene, name) in report.scenes.iter().zip(&names) {
-        let (figures, animation) = if scene.costs.is_empty() {
+        let (figures, animation) = if let Some(costs) = &scene.costs {
+            let picture = |time| costs::picture(costs, &scene.title, name, time);
+            (vec![picture(true), picture(false)], None)
+        } else {
             let drifts = [drift::CONSTRAINT, drift::ENERGY].map(|shown| drift::picture(scene, name, &shown));
             let sheet = scene.figure.as_ref().map(|shown| sheet::column(shown, format!("{name}-run")));
             let figures = [path::picture(scene, name)].into_iter().chain(drifts).chain(sheet).collect();
             (figures, animation::figure(scene))
-        } else {
-            ([true, false].map(|time| costs::picture(scene, name, time)).to_vec(), None)
         };
         for figure in &figures {
             contents.extend(figure.files()?);

@@ -37,7 +37,7 @@ pub(crate) fn page(report: &Report, shown: &[ShownScene<'_>]) -> String {
     page += "</header>\n<main>\n";
     scenes().for_each(|(scene, shown)| section(&mut page, scene, shown, &report.notes));
     let curve = |row: &[String]| {
-        let mut curves = report.scenes.iter().flat_map(|scene| &scene.costs);
+        let mut curves = report.scenes.iter().flat_map(|scene| scene.costs.iter().flatten());
         curves.position(|curve| row.first() == Some(&curve.label))
     };
     for own in &report.tables {
@@ -119,7 +119,7 @@ fn section(page: &mut String, scene: &SceneReport, shown: &ShownScene<'_>, notes
     let mut right: Vec<String> = shown.figures.iter().map(figure).collect();
     let mut left = vec![right.remove(0)];
     // A run without a path, of a system without a place, has no empty picture of one.
-    let place = !scene.costs.is_empty() || scene.series.iter().any(|series| !series.path.is_empty());
+    let place = scene.costs.is_some() || scene.series.iter().any(|series| !series.path.is_empty());
     left.retain(|_| place);
     left.extend(shown.animation.clone());
     if right.len() > 2 {

@@ -1,13 +1,7 @@
 //! The charts of the analyses.
 
+use crate::common::texts;
 use report::{Cells, Chart, Layer, chart_svg};
-
-/// The texts of a picture, which is well-formed.
-fn texts(picture: &str) -> Vec<String> {
-    let document = roxmltree::Document::parse(picture).unwrap();
-    let texts = document.descendants().filter(|node| node.has_tag_name("text"));
-    texts.map(|node| node.text().unwrap_or_default().trim().to_owned()).collect()
-}
 
 /// Lines, dots and cells; what is not finite, and what there is nothing of, is drawn without a panic.
 #[test]

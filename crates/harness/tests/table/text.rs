@@ -18,14 +18,14 @@ fn system(words: &Words, start: &Point) -> Box<dyn TextMechanics> {
 /// A point with the coordinates that fill up a shape, at rest at zero.
 fn filled(system: &dyn Mechanism, point: &Point) -> Point {
     let Point { mut q, mut v } = point.clone();
-    [&mut q, &mut v].map(|x| x.resize(system.size().n, 0.0));
+    [&mut q, &mut v].into_iter().for_each(|x| x.resize(system.size().n, 0.0));
     Point { q, v }
 }
 
 /// Where a run of the text ends.
 fn end(system: &dyn Mechanism, method: &Method, start: &Point, schedule: &Schedule) -> Result<Point, RunError> {
     let Point { mut q, mut v } = case::end(system, method, &filled(system, start), schedule, &mut |_| {})?;
-    [&mut q, &mut v].map(|x| x.truncate(start.q.len()));
+    [&mut q, &mut v].into_iter().for_each(|x| x.truncate(start.q.len()));
     Ok(Point { q, v })
 }
 
