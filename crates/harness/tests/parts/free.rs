@@ -1,7 +1,7 @@
 //! The free sleigh, in steps that nearly every method refuses, against the motion in closed form.
 
 use crate::parts::{BAR, EACH, Run, by, by_each, request, sleigh};
-use dla::{StepError, Subject, Substeps};
+use dla::{Subject, Substeps};
 use harness::Method;
 use sleigh::{Exact, SleighState};
 
@@ -103,7 +103,6 @@ fn what_needs_too_many_parts_says_so() {
     let record = harness::run(&Subject::from(&sleigh(0.5)), &method, &request(&start, (1e12, 1)), &mut ());
     let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
     assert_eq!((why.tried, record.steps, failure.source), (10_000, 0, why.source));
-    assert!(matches!(why.source, StepError::Closed(_)), "{why}");
     assert!(why.part < 10.0 && why.time > 1e3 && why.time < 1e6, "{why}");
     assert!(why.to_string().contains("10000 parts of the step were tried"), "{why}");
 }
