@@ -76,7 +76,7 @@ impl Bench<'_> {
         let texts = check.kind.texts(&check.of);
         if check.kind == Kind::Ends || check.kind == Kind::Dependent {
             let ended = check.kind == Kind::Dependent || run.end().is_some();
-            let Some(off) = formulas.last(&texts)?.filter(|_| ended) else { return Ok(Vec::new()) };
+            let Some(off) = formulas.last(&texts)?.filter(|_| ended).map(f64::abs) else { return Ok(Vec::new()) };
             let bar = formulas.bar(check)?;
             return Ok(if check.kind == Kind::Ends {
                 vec![check::measured(what, off, bar)]

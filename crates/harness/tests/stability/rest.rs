@@ -1,10 +1,9 @@
 //! Motions that are small beside the forces on them: what is broken is what a search takes for rounding, or how it asks for a force.
 
 use crate::stability::checks::{follows, stays_below};
-use crate::stability::{control, energetic, recorded, schedule};
+use crate::stability::{control, recorded, schedule};
 use harness::stability::check::{rounding, truncation};
 use harness::stability::{Recorded, Trial};
-use std::f64::consts::FRAC_PI_2;
 
 /// A step of the midpoint rule for `x'' = force(x) - drag x'` in `values[0]`, `values[3]`, by iteration of the mean velocity; a
 /// correction below `least` (m/s) ends it, and is not made.
