@@ -67,9 +67,9 @@ pub enum AssemblyError {
     Singular {
         /// In which equations.
         stage: Stage,
-        /// The smallest pivot, relative to its column; zero where none is left.
+        /// The smallest pivot, relative to its column; zero if none is left.
         pivot: f64,
-        /// The constraints that depend on one another there, the heaviest first; none where it is not they.
+        /// The constraints that depend on one another, the heaviest first; empty if the constraints are independent.
         constraints: Vec<ConstraintRow>,
     },
     /// Newton's method found no solution.
@@ -84,19 +84,19 @@ pub enum AssemblyError {
     /// The equations have a solution, but it cannot be shown to continue the motion.
     #[error("the step is too long: a constraint would turn by {turn:.2} rad in one step")]
     Branch {
-        /// By how much the constraint turns that turns most (rad).
+        /// The largest turn of a constraint (rad).
         turn: f64,
     },
     /// Forces that depend on the velocity are too stiff for the step.
     #[error("the step is too long: the braking forces would reverse the velocity; a step {} times shorter resolves them", Shown(part.recip()))]
     Overshoot {
-        /// The longest part of the step for which they do not.
+        /// The longest fraction of the step at which they do not reverse a velocity.
         part: f64,
     },
-    /// A coordinate or a velocity became infinite or not a number.
+    /// A coordinate or a velocity became infinite or NaN.
     #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,
-    /// A function of an element, or a derivative of one, is not a number or not finite; coordinates and rows are those of the assembly.
+    /// A function of an element, or one of its derivatives, is infinite or NaN; coordinates and rows are numbered as in the assembly.
     #[error("element {element} ({name}): {source}")]
     NotANumber {
         /// The element, counted from 0 in the order in which they were added.
@@ -110,26 +110,25 @@ pub enum AssemblyError {
     /// The method makes the step, but its halves lead elsewhere (see [`dla::Halved`]); asked only of steps that may be made in parts.
     #[error("the step does not resolve the motion: two steps of half the length end elsewhere")]
     Unresolved,
-    /// Whoever waits has asked for the end ([`dla::Stop`]).
+    /// The caller has asked for the end ([`dla::Stop`]).
     #[error("ended before it was done")]
     Stopped,
-    /// Forces or constraints jump inside the step, across which no method has an order.
+    /// Forces or constraints jump inside the step, where no method has an order.
     #[error("forces or constraints jump at t = {} s, inside the step: the run has fewer steps than pieces between jumps", Shown(*time))]
     Jump {
-        /// When (s).
+        /// The time of the jump (s).
         time: f64,
     },
     /// The method cannot do assemblies.
     #[error("{reason}")]
     Unsupported {
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
 }
 
 impl AssemblyError {
-    /// Whether shorter steps may do what this one has not: see [`StepError::may_hold_in_parts`]. Constraints that depend on one another
-    /// do so in any step.
+    /// Whether shorter steps may succeed: see [`StepError::may_hold_in_parts`]. Dependent constraints stay dependent in any step.
     #[must_use]
     pub fn may_hold_in_parts(&self) -> bool {
         match self {
@@ -138,7 +137,7 @@ impl AssemblyError {
         }
     }
 
-    /// The error of a static step that says most of it; which constraints are singular it does not know.
+    /// The nearest error of a static step. It does not name the singular constraints.
     #[must_use]
     pub fn step_error(&self) -> StepError {
         match self {
@@ -169,15 +168,15 @@ fn involved(constraints: &[ConstraintRow]) -> String {
     if named.is_empty() { String::new() } else { format!("; dependent there: {}", named.join(", ")) }
 }
 
-/// A run that ended early; the state is that of the last good node.
+/// A run that ended early. The state is then the state of the last good node.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("step {step}, from t = {} s: {source}", Shown(*time))]
 pub struct AssemblyRunError {
     /// The number of the failed step, from 1.
     pub step: u64,
-    /// The time it began at, which is how far the trajectory is valid (s).
+    /// The time at which the failed step began, up to which the trajectory is valid (s).
     pub time: f64,
-    /// What happened.
+    /// The error of the step.
     #[source]
     pub source: AssemblyError,
 }

@@ -5,12 +5,12 @@ use crate::projection::project;
 use crate::{Assembly, AssemblyError, AssemblyState, Solver, terms};
 
 impl Assembly {
-    /// Where the velocity of a state misses the constraints by more than rounding, as where an imposed velocity jumps, the impulse of the
-    /// constraints brings it there: `sum_e L_v(q, v) = p + A' mu`, `A v + b = 0`, as [`dla::onto_constraint`]. Rounding is that of a step of
-    /// length `h` (s).
+    /// Brings the velocity of a state onto the constraints by an impulse of the constraints, if it misses them by more than rounding, as
+    /// after a jump of an imposed velocity: `sum_e L_v(q, v) = p + A' mu`, `A v + b = 0`, as [`dla::onto_constraint`]. Rounding is
+    /// judged for a step of length `h` (s).
     ///
     /// # Errors
-    /// [`AssemblyError`] where the constraints do not determine the velocity, or for want of memory.
+    /// [`AssemblyError`] if the constraints do not determine the velocity, or if the memory does not suffice.
     pub fn onto_constraint(&self, (t, h): (f64, f64), state: &mut AssemblyState) -> Result<(), AssemblyError> {
         let mut contributions = Contributions::of(self, PARALLEL);
         let mut levels = vec![0.0; self.rows()];

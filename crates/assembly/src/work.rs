@@ -9,15 +9,15 @@ use lagrangian::quadrature::gauss_legendre;
 
 /// The work done on an assembly since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
 ///
-/// It is that of [`dla::Work`], summed over the elements: the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along
-/// the polynomial of degree five that has the positions, velocities and accelerations of both ends of the step, which is of order 6.
-/// A step whose forces and moving constraints have no power costs no acceleration.
+/// As in [`dla::Work`], summed over the elements: the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along the
+/// polynomial of degree five through the positions, velocities and accelerations at both ends of the step, which has order 6. A step whose
+/// forces and moving constraints have no power needs no acceleration.
 pub struct AssemblyWork {
     total: f64,
     rest: f64,
     nodes: [f64; 4],
     weights: [f64; 4],
-    /// What finds accelerations, where some were needed; `Err` where the memory did not suffice.
+    /// The solver for accelerations, made when first needed; `Err` if the memory did not suffice.
     motion: Option<Result<ElementMotion, ()>>,
     ends: [WorkEnd; 2],
     q: Vec<f64>,
@@ -70,24 +70,24 @@ impl AssemblyWork {
     /// The work that [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none.
+    /// [`CheckpointError`] if the checkpoint has no work.
     pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [total, rest] = checkpoint.get("work")?;
         Ok(Self { total, rest, ..Self::default() })
     }
 
-    /// The sum with its rest (J), to go back to with [`back_to`](Self::back_to).
+    /// The sum with its rest (J), for [`back_to`](Self::back_to).
     #[must_use]
     pub fn sum(&self) -> [f64; 2] {
         [self.total, self.rest]
     }
 
-    /// Takes back what has been added since [`sum`](Self::sum), where the steps that did it have come to nothing.
+    /// Restores an earlier [`sum`](Self::sum), for steps that are discarded.
     pub fn back_to(&mut self, sum: [f64; 2]) {
         [self.total, self.rest] = sum;
     }
 
-    /// Adds the work of a step, from one time and state to another. It is not a number where the accelerations are not determined.
+    /// Adds the work of a step from one time and state to another. The work is NaN if the accelerations are not determined.
     pub fn step(&mut self, assembly: &Assembly, before: (f64, &AssemblyState), after: (f64, &AssemblyState)) {
         let work = self.over_step(assembly, before, after);
         self.add(work);
@@ -141,7 +141,7 @@ impl AssemblyWork {
         h * sum
     }
 
-    /// Whether forces or time have power at an end of the step, or at a node on the straight line between them.
+    /// Whether forces or explicit time have power at an end of the step, or at a node on the straight line between the ends.
     fn is_powered(&mut self, assembly: &Assembly, t0: f64, h: f64) -> bool {
         let [first, last] = &self.ends;
         [0.0, 1.0].into_iter().chain(self.nodes).any(|c| {
