@@ -81,7 +81,7 @@ struct Begun<'a, D, const N: usize, const M: usize> {
     bordered: Bordered<N, M>,
     tolerance: f64,
     v: [f64; N],
-    /// The first correction, the impulse that was solved for with it, and the momenta where it was made.
+    /// The first correction, the impulse that was solved for with it, and the momenta from which it was made.
     d: [f64; N],
     lambda: [f64; M],
     first: Departure<N>,
@@ -119,7 +119,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M>
                 Some(d)
             },
         )?;
-        // Where the equations at `v` are met, the momenta at the end are the sum of those at both ends and the reaction. The last
+        // If the equations at `v` are met, the momenta at the end are the sum of the momenta of both ends and the reaction. The last
         // correction changes that sum in proportion to its size, as the one before did.
         if change * size > f64::EPSILON * before * sup(&both) {
             both = ends(&increment.momenta(&v));
