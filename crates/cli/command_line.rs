@@ -6,7 +6,7 @@ use scene::RunSettings;
 pub(crate) struct CommandLine(Vec<String>);
 
 impl CommandLine {
-    /// `noslip COMMAND SCENE`, with the settings in place of those of the scene.
+    /// `noslip COMMAND SCENE`, with one `--set` for each setting.
     pub(crate) fn of(command: &str, scene: &str, set: &Settings) -> Self {
         let line = Self(["noslip", command, scene].map(str::to_owned).to_vec());
         set.set.iter().fold(line, |line, setting| line.with("--set", setting))

@@ -14,7 +14,7 @@ use std::io::{Error, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The rows of a group, fewer where these would be more than so many numbers.
+/// Maximum number of rows in a group; a group also holds at most [`HELD`] numbers.
 const GROUP: usize = 1 << 16;
 const HELD: usize = 1 << 22;
 
