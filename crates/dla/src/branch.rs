@@ -19,8 +19,8 @@ pub(crate) fn unfollowed(derivatives: [&[f64]; 2]) -> StepError {
     if same { StepError::Stiff } else { StepError::Branch }
 }
 
-/// By how much a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two ends do
-/// not show whole turns. Zero where no angle turns by more than 1 rad.
+/// The angle by which a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two
+/// ends do not show whole turns. Zero if no angle turns by more than 1 rad.
 #[inline(always)]
 pub(crate) fn turn_of<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -66,8 +66,8 @@ fn turned_by<const N: usize, const M: usize>(
     StepError::Turn { coordinate, turn, step: h.abs() }
 }
 
-/// By how much an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its derivative
-/// along the increment.
+/// The angle by which an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its
+/// derivative along the increment.
 ///
 /// Zero if no angle turns by more than 1 rad.
 #[inline(always)]
@@ -100,7 +100,7 @@ fn turned<const N: usize, const M: usize>(a: [[Dual<f64, 1>; N]; M]) -> f64 {
 pub fn followed<X: Clone>(start: &X, longest: f64, mut solve: impl FnMut(f64, &mut X) -> Option<()>) -> Option<X> {
     /// If shorter parts are needed, the branch counts as ended.
     const SHORTEST: f64 = 1.0 / 1024.0;
-    // A lower bound on the parts, also where the turn of the whole step is huge or NaN.
+    // A lower bound on the parts, even if the turn of the whole step is huge or NaN.
     let longest = longest.max(SHORTEST);
     let (mut x, mut reached, mut part) = (start.clone(), 0.0, f64::min(longest, 0.25));
     while reached < 1.0 {

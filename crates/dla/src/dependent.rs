@@ -6,7 +6,7 @@ use lagrangian::{RowSpace, Rows, Shown, mapped};
 use std::fmt;
 use thiserror::Error;
 
-/// Rows of a constraint that depend on one another where a step needs independent ones.
+/// Rows of a constraint that depend on one another, in a step that needs independent ones.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub struct Dependent {
     /// The rows that can be left out, and the rows on which they depend.
@@ -208,7 +208,7 @@ pub(crate) fn rows_left_out<const N: usize, const M: usize>(
     let missed: Rows = (0..M)
         .filter(|k| !kept.contains(*k))
         .filter(|k| {
-            // Twice its rounding is allowed to a position, since none but the others was solved for.
+            // Twice its rounding is allowed to a position, since only the kept rows were solved for.
             let off = positions.and_then(|g| g[*k]).is_some_and(|g| {
                 let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
                 g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding

@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
     }
 
-    /// A correction is accepted without a check where one as large was checked lately, with a Jacobian that is no longer new.
+    /// A correction is accepted without a check if one as large was checked lately, with a Jacobian that is no longer new.
     #[test]
     fn what_was_seen_is_believed_for_a_while() {
         let unit = [[1.0, 0.0], [0.0, 1.0]];

@@ -57,9 +57,9 @@ pub trait Discretisation<const N: usize, const M: usize> {
 /// `[D1 L_d, D2 L_d]`, and `[f_d^-, f_d^+]` if there are forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndMomenta<const N: usize> {
-    /// Of the discrete Lagrangian.
+    /// The derivatives of the discrete Lagrangian.
     pub slopes: [[f64; N]; 2],
-    /// Of the discrete forces.
+    /// The discrete forces; `None` if there are no forces.
     pub forces: Option<[[f64; N]; 2]>,
 }
 
@@ -79,9 +79,9 @@ pub struct RoundedStep<const N: usize, const M: usize> {
 /// Rules are values, not types: a step is compiled once for all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
-    /// Of `L_d`.
+    /// The rule of `L_d`.
     pub lagrangian: Rule,
-    /// Of `w_d`.
+    /// The rule of `w_d`.
     pub constraint: Rule,
 }
 
@@ -126,7 +126,7 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
         EndMomenta { slopes: [d1, d2], forces }
     }
 
-    /// Dual numbers are seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
+    /// Dual numbers are seeded at the nodes, whose configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
     /// themselves are computed in plain numbers.
     #[inline]
     fn linearised(

@@ -27,9 +27,9 @@ pub enum Hint {
     OtherMethod,
     /// The method has no room for so large a system: other methods take less, and an assembly keeps many bodies on the heap.
     LessStack,
-    /// Choose a step that has a node where the forces jump.
+    /// Choose a step that has a node at the jump of the forces.
     NodeAt {
-        /// When (s).
+        /// The time of the jump (s).
         time: f64,
     },
     /// The motion comes to a corner or a pole of a function: write it with functions that have a derivative there.

@@ -43,7 +43,7 @@ pub(crate) trait BlockEquations<const U: usize, const S: usize> {
     /// The correction `-F'(x)^-1 F(x)` at `x`.
     fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular>;
 
-    /// The largest residual at `x`, where the last correction was made, in units of the round-off of its terms.
+    /// The largest residual at `x`, from which the last correction was made, in units of the round-off of its terms.
     fn roundings(&self, x: &[[f64; U]; S]) -> Option<f64>;
 
     /// Makes later solutions of the linear equations with less round-off. Returns false if that is not possible.

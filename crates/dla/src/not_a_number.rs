@@ -2,7 +2,7 @@ use lagrangian::{AdmissibleBasis, Called, Gradient, Reduced, System, from_fn, qu
 use std::fmt;
 use thiserror::Error;
 
-/// A function of a system that is not finite, or has no finite derivative, where a step has to know it.
+/// A function of a system that is not finite, or has no finite derivative, although a step needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub struct NotANumber {
     /// The function.
@@ -61,7 +61,7 @@ pub enum SystemFunction {
     },
 }
 
-/// What a function of a system depends on. Coordinates are counted from 0.
+/// A variable of a function of a system. Coordinates are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
     /// The time.

@@ -115,7 +115,7 @@ impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, 
 /// Looks at the end of a step that a method makes of its own, a time (s) and a state.
 pub type OwnStep<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> ControlFlow<()> + 'a;
 
-/// What a step did besides moving the state.
+/// The report of a step, besides the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepReport<const M: usize> {
     /// Impulses of the constraints at the two ends of the step (N s); the constraint acts with `A(q0)' impulses[0] + A(q1)' impulses[1]`.
@@ -215,7 +215,8 @@ pub enum StepError {
     /// A function of the system, or a derivative of one, is not a number or not finite.
     #[error(transparent)]
     NotANumber(#[from] NotANumber),
-    /// The force on a coordinate jumps where the system comes to rest: beyond there is no motion, however short the step.
+    /// The force on a coordinate jumps at the velocity zero, and the system comes to rest there: beyond there is no motion, however short
+    /// the step.
     #[error(
         "the force on coordinate {coordinate} jumps where the velocity changes its direction, as `sign(v)` does, and the motion comes to \
         rest there: no step is short enough; write a smooth function of the velocity, as `tanh(v/eps)` with a small speed `eps`, or end the \

@@ -63,7 +63,7 @@ impl MeanPower {
 }
 
 /// The work over a step between two places, times, configurations and velocities: [`power`] with four Gauss nodes along the polynomial of
-/// degree five that has the accelerations of both ends too, or of degree three where an end has none.
+/// degree five that has the accelerations of both ends too, or of degree three if an end has none.
 pub(crate) fn work_between<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     sources: PowerSources,

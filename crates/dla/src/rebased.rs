@@ -120,7 +120,7 @@ impl<Method> Rebased<Method> {
         let known = *basis;
         system.near(time, place, number, &mut |number, near| {
             if number != known {
-                // What is remembered is in the other basis.
+                // The memory belongs to the other basis.
                 method.recall(&[], state);
                 state.advance(&[0.0; N], *state.v(), None);
             }
@@ -173,7 +173,7 @@ where
             };
             let ended = self.local == Some(true) && matches!(found, Ok((_, None)));
             let whole = ended.then(|| left_branch(system, (t, h), &before, state)).flatten();
-            // Seen over the whole step too: in steps of the method's own, and where bases change, the motion may turn little by little.
+            // Seen over the whole step too: in own steps of the method, and if bases change, the motion may turn little by little.
             let found = whole.map_or(found, |dropped| Err(dropped.into()));
             match found {
                 Ok((report, end)) => {
@@ -184,7 +184,7 @@ where
                 Err(error) => {
                     *state = before;
                     if total.is_some() || self.basis != basis {
-                        // What the method remembers is of another place or in another basis.
+                        // The memory of the method belongs to another place or another basis.
                         self.basis = basis;
                         self.method.recall(&[], state);
                     }

@@ -1,10 +1,10 @@
 use crate::StepError;
 
-/// What a step takes of the stack of its thread, in numbers of eight bytes: nothing in a step is allocated, so the arrays of a
-/// large system are all there.
+/// The stack that a step takes of its thread, in numbers of eight bytes: nothing in a step is allocated, so the arrays of a large system
+/// are all there.
 ///
-/// The counts of a method are fitted to what its steps were seen to take, with a tenth and more to spare. A method compares them
-/// with [`StackUse::LIMIT`] before its first array is made:
+/// The counts of a method are fitted to the measured use of its steps, with a tenth and more to spare. A method compares them with
+/// [`StackUse::LIMIT`] before its first array is made:
 ///
 /// ```
 /// use dla::{StackUse, StepError};

@@ -30,7 +30,7 @@ pub struct State<const N: usize> {
     past: Past<N>,
 }
 
-/// What the last step leaves to the next beside the velocity.
+/// The results of the last step for the next, beside the velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Left<const N: usize> {
     Nothing,
@@ -271,7 +271,7 @@ impl<const N: usize> State<N> {
     fn wrap(&mut self) {
         for i in 0..N {
             if self.q[i].abs() > self.bounds[i] {
-                // By value, since few steps come here: in the others the numbers stay in registers.
+                // By value, since few steps come here: in all other steps the numbers stay in registers.
                 let turns;
                 (self.q[i], self.rest[i], turns) = wrapped(self.q[i], self.rest[i]);
                 self.turns[i] += turns;

@@ -18,7 +18,7 @@ impl StepError {
             Self::Motion(MotionError { source, .. })
             | Self::Reduced(ReducedError::Motion(MotionError { source, .. })) => lost(source),
             Self::Energy { defect, .. } => !defect.is_finite(),
-            // An adaptive method takes shorter and shorter steps where a function is NaN.
+            // An adaptive method takes shorter and shorter steps if a function is NaN.
             Self::NotFinite | Self::Tolerance { .. } => true,
             _ => false,
         }

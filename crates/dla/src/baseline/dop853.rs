@@ -53,7 +53,7 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
         Self { solver, proposed: None, sources: PowerSources::NONE }
     }
 
-    /// Crosses an interval of length `h`, shows where its steps end within it, and returns the steps tried.
+    /// Crosses an interval of length `h`, shows the inner ends of its steps, and returns the number of steps tried.
     #[inline]
     fn cross(
         &mut self,

@@ -16,7 +16,7 @@ pub enum CorrectionKind {
     Chord,
 }
 
-/// What an iteration asks of every correction.
+/// The settings of the convergence test for a correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// How the correction was made.

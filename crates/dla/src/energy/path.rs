@@ -44,7 +44,7 @@ impl<const N: usize> PathPoints<N> {
         Self { q: same(*start.state.q()), xi: same(start.xi), gain: same(start.rest), pi: same(start.pi) }
     }
 
-    /// Moves the points onto `path`, where `weights` are `int_0^tau l_i`.
+    /// Moves the points onto `path`; `weights` are `int_0^tau l_i`.
     ///
     /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start. The correction is exact if that
     /// matrix is constant in the basis; otherwise it is part of the fixed-point iteration.

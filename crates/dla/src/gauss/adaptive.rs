@@ -40,7 +40,8 @@ impl GaussAdaptive {
     /// Steps tried within an interval before it is given up.
     pub const MAX_TRIES: u32 = 100_000;
 
-    /// The method with `S` stages, from two to eight, and the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in every component.
+    /// The method with `S` stages, from two to eight, and the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in
+    /// every component.
     #[must_use]
     pub fn new<const S: usize>(epsilon: f64) -> Self {
         let (aim, degree) = (roughest(S, epsilon), degree(S, epsilon));

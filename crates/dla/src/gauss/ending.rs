@@ -32,7 +32,7 @@ pub(super) struct StageSearch {
     stalled: u32,
 }
 
-/// What follows from a change.
+/// The consequence of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum EndingVerdict {
     Continue,

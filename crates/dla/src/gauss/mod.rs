@@ -164,8 +164,8 @@ impl Gauss {
         Ok(TakenStep { increment, gain, iterations })
     }
 
-    /// The work (J) over a step from `q0` by these slopes of its stages; `None` if no source is measured. It is one more unknown `w' = P(t,
-    /// q, v)` of the collocation, and has its order.
+    /// The work (J) over a step from `q0` by these slopes of its stages; `None` if no source is measured. It is one more unknown
+    /// `w' = P(t, q, v)` of the collocation, and has its order.
     #[inline(always)]
     fn work<const N: usize, const M: usize>(
         &self,
@@ -231,8 +231,8 @@ impl Gauss {
 
     /// Whether slopes are smooth along the step: a polynomial of the degree of the method follows them.
     fn resolves<const N: usize>(&self, slopes: &[[f64; N]; 8]) -> bool {
-        /// Largest value of the highest Legendre coefficient, relative to the slope, of a motion that is resolved; its power `2 s / (s -
-        /// 1)` is about the error of a step.
+        /// Largest value of the highest Legendre coefficient, relative to the slope, of a motion that is resolved; its power
+        /// `2 s / (s - 1)` is about the error of a step.
         const ROUGH: f64 = 0.05;
         /// Least unit for a slope, relative to the largest slope.
         const SMALL: f64 = 1e-3;

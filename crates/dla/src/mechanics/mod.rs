@@ -191,10 +191,10 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
         basis: &AdmissibleBasis<f64, N, M>,
     ) -> Result<[[f64; N]; N], lagrangian::linear::Singular>;
 
-    /// The bracket of the dual of the distribution at eight points; none without a basis.
+    /// The bracket of the dual of the distribution at eight points; `None` without a basis.
     fn bracket(&self, t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<Bracket<Lanes, N, M>>;
 
-    /// The slope of the energy at eight points; none without a basis.
+    /// The slope of the energy at eight points; `None` without a basis.
     fn energy_slope(&self, t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<EnergySlope<Lanes, N>>;
 
     /// The forces at eight points.

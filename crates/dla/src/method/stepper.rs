@@ -26,7 +26,7 @@ impl Method {
         }
     }
 
-    /// The method, to make steps with: the one place where a name becomes a type.
+    /// The method, to make steps with: only here a name becomes a type.
     #[must_use]
     #[inline(never)]
     pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<'static, N, M> {

@@ -66,7 +66,7 @@ pub trait Observer {
     /// Sees the first node.
     fn start(&mut self, node: &View<'_>);
 
-    /// Sees a node again where the next smooth piece of a run begins: the velocity may have jumped.
+    /// Sees a node again at the beginning of the next smooth piece of a run: the velocity may have jumped.
     #[inline(always)]
     fn resume(&mut self, _node: &View<'_>) {}
 

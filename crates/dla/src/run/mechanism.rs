@@ -113,7 +113,7 @@ pub trait Mechanism {
     /// Shows the system with a count of its evaluations.
     fn counted(&self, evaluations: &Cell<u64>, then: &mut dyn FnMut(&dyn Mechanism));
 
-    /// The reduced equations with their derivatives ([`reduced_field`](crate::reduced_field())); none without a basis.
+    /// The reduced equations with their derivatives ([`reduced_field`](crate::reduced_field())); `None` without a basis.
     ///
     /// # Errors
     /// [`Singular`] if the equations are degenerate.

@@ -76,11 +76,10 @@ const FINE: u64 = 1 << 16;
 /// found by trial: `make` makes a run by a schedule, and returns the configurations, angles with their turns, at the given times; the last
 /// time is the end of the run.
 ///
-/// A step that changes along a run would destroy the symmetry of a symmetric method; a constant one keeps it. The number of
-/// steps is doubled until the change, extrapolated by the ratio of two changes (Richardson), no longer moves by more than a
-/// part of the tolerance: that is the reference. The order of the method is what that ratio shows. Then the number of
-/// steps is refined against it, to half of the tolerance. It costs some four times the steps of what it recommends, and
-/// more where the tolerance is loose.
+/// A step that changes along a run would destroy the symmetry of a symmetric method; a constant one keeps it. The number of steps is
+/// doubled until the change, extrapolated by the ratio of two changes (Richardson), no longer moves by more than a part of the tolerance:
+/// that is the reference. That ratio shows the order of the method. Then the number of steps is refined against the reference, to half of
+/// the tolerance. The search costs some four times the steps of its result, and more if the tolerance is loose.
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
@@ -177,7 +176,7 @@ fn reference(
                 }
             }
             Err(RunError { source: StepError::Stopped, .. }) => return Err(RecommendError::Stopped),
-            // What was found with longer steps, if anything was, cannot be compared.
+            // Results with longer steps cannot be compared.
             Err(error) => {
                 failure = Some(error);
                 trials.clear();

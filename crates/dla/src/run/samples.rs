@@ -50,7 +50,7 @@ impl<'a> Samples<'a> {
             && self.failure.is_none()
         {
             let (since, left) = (forward * (t - t0), forward * (node.t - t));
-            // What is not a number is never reached.
+            // A time that is not a number is never reached.
             if !(since >= 0.0 && left >= 0.0) {
                 return;
             }

@@ -19,7 +19,7 @@ pub struct Node {
     pub work: f64,
     /// Largest constraint residual `|A(q) v + b|`.
     pub constraint: f64,
-    /// Constraint forces averaged over the step that led here; none at the start.
+    /// Constraint forces averaged over the step that led here; `None` at the start.
     pub multipliers: Option<Vec<f64>>,
 }
 
@@ -184,8 +184,8 @@ impl<'a> Nodes<'a> {
         Self { choice: Choice::every(every), sink }
     }
 
-    /// The same for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave, and which
-    /// [`save`](Self::save) wrote to: the nodes are those that a run without the checkpoint would have handed on after it.
+    /// The same observer for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave, and
+    /// which [`save`](Self::save) wrote to: it hands on the same nodes as a run without the checkpoint does from there.
     #[must_use]
     pub fn resumed(self, (k, t): (u64, f64), work: Work, checkpoint: &Checkpoint) -> Self {
         let last = k.is_multiple_of(self.choice.every).then_some(k);

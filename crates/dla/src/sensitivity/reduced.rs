@@ -7,9 +7,9 @@ use lagrangian::{Scalar, Seeded, from_fn, mapped};
 /// A variation of a configuration and of its quasi-velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReducedVariation<const N: usize> {
-    /// Of the configuration.
+    /// The variation of the configuration.
     pub q: [f64; N],
-    /// Of the quasi-velocities; the last `M` places are zero.
+    /// The variation of the quasi-velocities; the last `M` entries are zero.
     pub xi: [f64; N],
 }
 

@@ -1,5 +1,5 @@
 //! The predicted step in the basis of admissible velocities, `v = W xi`: there are no multipliers to eliminate, and the Jacobian hardly
-//! changes where the basis turns with a body.
+//! changes if the basis turns with a body.
 
 mod arrival;
 mod mean;

@@ -1,4 +1,4 @@
-/// A point where a function takes a value.
+/// A point with the value of a function.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RootPoint {
     pub(super) at: f64,

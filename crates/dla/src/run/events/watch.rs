@@ -35,13 +35,13 @@ pub struct Watch<'a, Inner> {
     events: &'a [Event<'a>],
     inner: Inner,
     before: Option<(f64, AnyState)>,
-    /// Whether nothing has been looked at since the start of the run.
+    /// Whether no interval has been searched since the start of the run.
     at_start: bool,
     /// Number of times that an event was not seen as a whole in a step.
     unseen: u64,
     /// The memory of the method's own steps; empty if it makes none.
     memory: Vec<f64>,
-    /// Whether the parts of the step have been looked at already.
+    /// Whether the parts of the step have been searched already.
     in_parts: bool,
     crossings: Vec<Crossing>,
     /// The crossing that ended the run, with the number of its node.
@@ -223,7 +223,7 @@ impl<Inner: Observer> Observer for Watch<'_, Inner> {
         self.inner.step(node, report)
     }
 
-    /// Each part is looked at as a step is: a divided step may hold many crossings.
+    /// Each part is searched as a step is: a divided step may hold many crossings.
     fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         // A part is made without the memory of the method.
         self.memory.clear();
