@@ -129,7 +129,7 @@ struct Carry<'a> {
 }
 
 impl Carry<'_> {
-    /// The number of the basis near a state, where `known` is the one before.
+    /// The number of the basis near a state; `known` is the number before.
     fn near(&self, t: f64, state: &AnyState, known: u64) -> u64 {
         let mut number = 0;
         self.family.mechanism().near(t, state.q(), known, &mut |near, _| number = near);

@@ -44,7 +44,7 @@ impl Slip {
         self.resume(node);
     }
 
-    /// Sees a node again where a smooth piece begins.
+    /// Sees a node again at the beginning of a smooth piece.
     pub(crate) fn resume(&mut self, node: &View<'_>) {
         match &mut self.before {
             Some((t, state)) => {

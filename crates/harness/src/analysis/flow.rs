@@ -106,7 +106,7 @@ pub(super) fn admissible(mut xi: Vec<f64>, count: usize) -> Vec<f64> {
     xi
 }
 
-/// One velocity of `n`, the others being zero.
+/// One velocity of `n`, with zeros at all other indices.
 pub(super) fn single(n: usize, place: usize, value: f64) -> Vec<f64> {
     (0..n).map(|k| if k == place { value } else { 0.0 }).collect()
 }

@@ -81,10 +81,10 @@ pub enum LyapunovError {
 
 /// The Lyapunov exponents of a motion of a system, by the derivatives of the steps that a method makes along it.
 ///
-/// The first `n` coordinates and `m` constraints of the system, `own`, are its own: others fill up its shape, and have no exponents. `2 n -
-/// m` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions: neighbours that do not
-/// keep these do not count. The exponents do not depend on the coordinates if the motion stays in a bounded region of them or is invariant
-/// under the translations that leave it. A run that fails gives what it has, with [`Lyapunov::failure`] set.
+/// The first `n` coordinates and `m` constraints of the system, `own`, are its own: others fill up its shape, and have no exponents.
+/// `2 n - m` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions:
+/// neighbours that do not keep these do not count. The exponents do not depend on the coordinates if the motion stays in a bounded region
+/// of them or is invariant under the translations that leave it. A run that fails gives what it has, with [`Lyapunov::failure`] set.
 ///
 /// # Errors
 /// [`LyapunovError`] if the request makes no sense, or the method has no derivatives here.

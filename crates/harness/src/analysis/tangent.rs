@@ -10,7 +10,7 @@ use std::cell::{Cell, RefCell};
 /// The derivative of a step.
 #[derive(Debug)]
 pub(super) struct Stepped {
-    /// `d(q1, xi1)/d(q0, xi0)` along the directions, where `xi1` are quasi-velocities for the next step.
+    /// `d(q1, xi1)/d(q0, xi0)` along the directions; `xi1` are quasi-velocities for the next step.
     pub(super) matrix: DMatrix<f64>,
     /// The logarithm of the factor by which a change of the basis at the end of the step changes volumes.
     pub(super) change: f64,

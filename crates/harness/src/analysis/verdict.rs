@@ -70,8 +70,9 @@ const BOUNDED: f64 = 1.25;
 impl Evidence {
     /// The verdict, by these tests in this order:
     ///
-    /// 1. *runs away*: with the largest sizes `m(t)` up to the time `t` of a run of length `T`, all parts after the first quarter have a larger
-    ///    one than the part before, `m(T) >= 1.1 m(T/2)`, and `m(T) - m(T/2) >= m(T/2) - m(T/4)`. Every power of `t`, its logarithm and every growing exponential grow so;
+    /// 1. *runs away*: with the largest sizes `m(t)` up to the time `t` of a run of length `T`, all parts after the first quarter have a
+    ///    larger one than the part before, `m(T) >= 1.1 m(T/2)`, and `m(T) - m(T/2) >= m(T/2) - m(T/4)`. Every power of `t`, its
+    ///    logarithm and every growing exponential grow so;
     ///    velocities that tend to a limit do not, once the limit shows.
     /// 2. *undecided*, if the run is too short for intervals.
     /// 3. *steady*: the velocities change by at most 1e-6 of their size.

@@ -144,7 +144,7 @@ impl<T> Line<T> {
     }
 }
 
-/// Leaves when it is dropped, also where a thread panics.
+/// Leaves when it is dropped, also if a thread panics.
 struct Leaving<'a, T>(&'a Line<T>);
 
 impl<T> Drop for Leaving<'_, T> {

@@ -101,7 +101,7 @@ impl Reference {
             }
             wanted = (count as f64 * RATIO).ceil() as u64;
         }
-        // Of the two ends with the smallest distance the later one.
+        // The later one of the two ends with the smallest distance.
         let Some((count, q)) = ends.get(best.1 + 1).cloned() else {
             return Err(failure.unwrap_or(ReferenceError::TooFew));
         };
