@@ -34,7 +34,7 @@ impl Caller {
         self.stop.within(work)
     }
 
-    /// What is being done, how much of it is done, and how much there is in all.
+    /// The present work, the amount done, and the total.
     #[must_use]
     pub fn progress(&self) -> Option<(String, u64, u64)> {
         let bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
@@ -119,27 +119,27 @@ pub fn call(arguments: impl IntoIterator<Item = OsString>, caller: &Caller) -> C
     CommandOutput { code, ..output }
 }
 
-/// Hands a text of standard output to the caller, where there is one.
+/// Hands a text of standard output to the caller; returns false if there is no caller.
 pub(crate) fn keep_out(text: &str) -> bool {
     with(|session| session.output.out.push_str(text)).is_some()
 }
 
-/// Hands a text of standard error to the caller, where there is one.
+/// Hands a text of standard error to the caller; returns false if there is no caller.
 pub(crate) fn keep_err(text: &str) -> bool {
     with(|session| session.output.err.push_str(text)).is_some()
 }
 
-/// Tells the caller, where there is one, whether another process writes the output.
+/// Tells the caller, if there is one, whether another process writes the output.
 pub(crate) fn note_busy(busy: bool) {
     with(|session| session.output.busy = busy);
 }
 
-/// Who ends this command, where that is not Ctrl-C.
+/// The program that called this command, if one did.
 pub(crate) fn caller() -> Option<Caller> {
     with(|session| session.caller.clone())
 }
 
-/// Shows a bar to the caller, where there is one.
+/// Shows a bar to the caller, if there is one.
 pub(crate) fn watch(bar: &ProgressBar) {
     with(|session| session.caller.watch(bar));
 }

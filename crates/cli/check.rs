@@ -47,7 +47,7 @@ fn valid(scene: &AnyScene, facts: &[(String, String)]) -> Value {
         AnyScene::Sleigh(scene) => scene.effects.iter().map(scene::SceneEffect::kind).collect(),
         AnyScene::Text(_) => Vec::new(),
     };
-    // Of effects there may be several, which `effects` lists.
+    // There may be several effects, which `effects` lists.
     let facts: Map<String, Value> =
         facts.iter().filter(|(name, _)| name != "effect").map(|(name, value)| (name.clone(), json!(value))).collect();
     json!({"scene": scene.name(), "valid": true, "title": scene.title(), "method": run.method, "step": run.actual_step(),

@@ -105,7 +105,7 @@ struct Compare<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// What shows how far a part of a comparison has come, and lets Ctrl-C end it.
+/// A progress bar for a part of a comparison, which Ctrl-C can end.
 pub(crate) fn progress_of<'a>(scene: &str, label: &str, steps: u64, interrupt: &'a Interrupt) -> Interruptible<'a> {
     Interruptible { bar: progress::bar(&format!("{scene} {label}"), steps), interrupt }
 }
@@ -172,7 +172,7 @@ impl Compare<'_> {
             });
             series.push(series_of(system, record));
         }
-        // The longest run: one that failed ends before the others.
+        // The longest run: a failed run ends before the rest.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
         let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
         let interrupted = self.interrupted(&records, referred);

@@ -7,7 +7,7 @@ use crate::{table, terminal};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The largest difference in a column, and where.
+/// The largest difference in a column, and its row.
 struct Difference {
     name: String,
     size: f64,

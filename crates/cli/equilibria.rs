@@ -15,7 +15,7 @@ use sleigh::Sleigh;
 /// that speed (rad/m), both scaled alike.
 const PORTRAIT: ([f64; 3], f64) = ([0.4, 0.7, 1.0], 0.03);
 
-/// What was found, and the orbits of a picture of it.
+/// The motions found, and the orbits of a picture of them.
 struct FoundMotions {
     rows: Vec<MotionRow>,
     searched: Searched,

@@ -19,9 +19,9 @@ pub struct RunRequest {
     pub tolerance: Option<f64>,
     /// Whether steps that are refused are divided.
     pub substep: bool,
-    /// What is reported, as `speed=0`.
+    /// The events to report, as `speed=0`.
     pub events: Vec<String>,
-    /// What ends the run.
+    /// The events that end the run.
     pub until: Vec<String>,
     /// Whether it goes backward in time.
     pub backward: bool,
@@ -52,7 +52,7 @@ pub struct RunResult {
 /// Why no run was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// What is wrong.
+    /// The message.
     pub message: String,
     /// True if the request is wrong; false if the computation failed.
     pub request: bool,
@@ -151,7 +151,7 @@ impl InMemory<'_> {
         } else {
             let mut samples = Samples::new(method, times);
             let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
-            // The motion at the times asked for, up to where the run comes; the work is not known there.
+            // The motion at the times asked for, as far as the run comes; the work is not known there.
             let node = |(t, state): (&f64, &AnyState)| {
                 let piece = mechanism.smooth_piece(*t);
                 let view = View { system: &*piece, k: 0, t: *t, state };

@@ -55,7 +55,7 @@ impl Interrupt {
     }
 }
 
-/// Calls `act` at every signal, in a thread of its own. Where there are no signals to be had, nobody can send one.
+/// Calls `act` at every signal, in a thread of its own. A system without signals sends none.
 #[cfg(unix)]
 fn handle(act: impl Fn() + Send + 'static) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

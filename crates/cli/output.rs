@@ -16,7 +16,7 @@ use std::path::Path;
 /// Where the rows of a run are to be written.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OutputRequest<'a> {
-    /// The file; none for standard output.
+    /// The file; `None` for standard output.
     pub(crate) path: Option<&'a Path>,
     format: Format,
     force: bool,

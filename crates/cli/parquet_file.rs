@@ -73,7 +73,7 @@ fn write_table(
 /// Gives the first rows of such a file to a sink.
 ///
 /// # Errors
-/// Those of the file and of the sink, and [`ErrorKind::InvalidData`] where the file is not a table of numbers with these names.
+/// The errors of the file and of the sink, and [`ErrorKind::InvalidData`] if the file is not a table of numbers with these names.
 pub(crate) fn read(
     path: &Path,
     names: &[String],

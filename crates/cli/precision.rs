@@ -96,7 +96,7 @@ fn unfinished(measured: &Measurement, climbed: usize, methods: usize) -> Option<
         .then(|| format!("all {methods} methods have their errors, and their times are of {made} of {all} rounds"))
 }
 
-/// What made the points.
+/// The provenance of the points.
 fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measurement) -> Provenance {
     let PrecisionArguments { methods, alpha, longest, with, csv, report, .. } = arguments;
     let command = CommandLine::of("precision", &arguments.scene, &arguments.set);

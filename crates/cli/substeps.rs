@@ -1,4 +1,4 @@
-//! What `noslip run` reports of steps divided into parts by `--substep`, and of steps that could be divided.
+//! The report of `noslip run` on steps divided into parts by `--substep`, and on steps that could be divided.
 
 use crate::table;
 use harness::{Record, SubstepSummary};

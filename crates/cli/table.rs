@@ -23,7 +23,7 @@ pub(crate) const COLUMNS: [&str; 14] = [
     "cost [s/s]",
 ];
 
-/// What the columns mean.
+/// The meaning of the columns.
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
     |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the largest residual of the discrete constraint between two \
     nodes, which is round-off for the methods that solve that constraint, such as dla. Energy error: the largest |E - E0 - work| at a \

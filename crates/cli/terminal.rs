@@ -46,7 +46,7 @@ impl Write for Out {
 /// Prints a result on standard error, if standard output has another.
 pub(crate) fn tell(text: &str) {
     if !called::keep_err(text) {
-        // Where that cannot be written to, there is nobody left to tell.
+        // A failure to write there cannot be reported.
         let _ = std::io::stderr().write_all(text.as_bytes());
     }
 }
@@ -73,7 +73,7 @@ pub(crate) fn print_usage(usage: &clap::Error) -> Result<(), CliError> {
     if usage.use_stderr() { Ok(()) } else { accept_closed(printed) }
 }
 
-/// Says why a command failed, in colours where standard error is a terminal.
+/// Prints why a command failed, in colours if standard error is a terminal.
 pub(crate) fn fail(error: &CliError) {
     let coloured = console::colors_enabled_stderr() && std::env::var_os("NO_COLOR").is_none_or(|no| no.is_empty());
     let line = format!("error: {error}\n");
@@ -86,11 +86,11 @@ pub(crate) fn fail(error: &CliError) {
         _ => None,
     };
     let line = format!("{level} {}\n", message.unwrap_or_else(|| harmless(&error.to_string()).into_owned()));
-    // Where that cannot be written to, there is nobody left to tell.
+    // A failure to write there cannot be reported.
     let _ = std::io::stderr().write_all(line.as_bytes());
 }
 
-/// Says something on standard error. Where that cannot be written to, there is nobody left to tell.
+/// Prints a message on standard error. A failure to write there cannot be reported.
 pub(crate) fn say(level: &str, message: &impl Display) {
     let line = format!("{level}: {message}\n");
     let line = harmless(&line);

@@ -175,7 +175,7 @@ impl<'a> Happened<'a> {
         Some(Self { name: &trigger.text, t, within, spacing, rising, state })
     }
 
-    /// Of the first blade of a train.
+    /// The event of the first blade of a train.
     pub(crate) fn of_train(
         train: &Train,
         watched: &[WatchedTriggers<'a, SleighQuantity>],

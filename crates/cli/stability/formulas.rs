@@ -1,4 +1,4 @@
-//! What the formulas of a hard case mean: numbers of the run and the method, and of each node.
+//! The meaning of the formulas of a hard case: numbers of the run and the method, and of each node.
 
 use super::case::Check;
 use expression::{Expression, Graph, Names, Tape, parse};

@@ -61,7 +61,7 @@ impl Bench<'_> {
         Ok(trial)
     }
 
-    /// What a check finds.
+    /// The findings of a check.
     fn found(
         &self,
         check: &'static Check,
