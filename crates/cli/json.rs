@@ -54,7 +54,7 @@ pub(crate) fn record_of(scene: &str, record: &Record, end: &Value) -> Value {
     object
 }
 
-/// What failed, at which step, when and why.
+/// The failed step, its time and the reason.
 pub(crate) fn failure(failure: &RunError) -> Value {
     json!({
         "step": failure.step,
@@ -78,7 +78,7 @@ pub(crate) fn compared(
     compared_of(scene, run, &state(run.t, end), error, better)
 }
 
-/// The same with the state at the end.
+/// As [`record_of`], with the state at the end.
 pub(crate) fn compared_of(scene: &str, run: &Record, end: &Value, error: Option<f64>, better: &[(&str, f64)]) -> Value {
     let mut object = record_of(scene, run, end);
     object["energy"]["drift_per_time"] = json!(run.energy.drift_per_time);

@@ -1,4 +1,4 @@
-//! What scenes are, for a person: names and values.
+//! Descriptions of scenes for a person: names and values.
 
 mod sleigh;
 mod text;
@@ -9,7 +9,7 @@ use scene::AnyScene;
 
 pub(crate) use sleigh::listed as of_sleigh;
 
-/// What a scene says.
+/// The description of a scene.
 pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
     let scene = match scene {
         AnyScene::Sleigh(scene) => &**scene,

@@ -1,8 +1,8 @@
 use dla::{AnyState, Checkpoint, CheckpointError, Method, Rules, View};
 use lagrangian::linear::larger;
 
-/// The constraint residuals of a run besides those of the velocities at its nodes: of the discrete constraint over each step, and of
-/// constraints on positions.
+/// The constraint residuals of a run besides the residuals of the velocities at its nodes: of the discrete constraint over each step, and
+/// of constraints on positions.
 #[derive(Debug)]
 pub(crate) struct Slip {
     rules: Rules,
@@ -14,7 +14,7 @@ pub(crate) struct Slip {
     /// A configuration with its turns.
     place: Vec<f64>,
     step: f64,
-    /// The largest of the functions of the positions, where there are any.
+    /// The largest of the functions of the positions; `None` if there are none.
     leaf: Option<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Slip {
         self.resume(node);
     }
 
-    /// Sees a node again where a smooth piece begins.
+    /// Sees a node again at the beginning of a smooth piece.
     pub(crate) fn resume(&mut self, node: &View<'_>) {
         match &mut self.before {
             Some((t, state)) => {
@@ -82,7 +82,7 @@ impl Slip {
         self.start(node);
     }
 
-    /// At the functions `g(q, t)` whose rates are constraints.
+    /// Looks at the functions `g(q, t)` whose rates are constraints.
     fn look(&mut self, node: &View<'_>) {
         self.place.resize(node.state.q().len(), 0.0);
         node.state.unwrap_into(&mut self.place);
@@ -97,7 +97,7 @@ impl Slip {
         checkpoint.put("leaf", self.leaf.as_slice());
     }
 
-    /// The same with what [`save`](Self::save) wrote.
+    /// A copy with the numbers that [`save`](Self::save) wrote.
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [step] = checkpoint.get("slip")?;
         let leaf = checkpoint.list("leaf")?.first().copied();

@@ -1,6 +1,6 @@
 use super::MethodKind;
 
-/// What is known of a method: one row of [`METHODS`], from which every list of methods is made.
+/// The properties of a method: one row of [`METHODS`], from which every list of methods is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MethodInfo {
     /// Which one it is.
@@ -9,9 +9,9 @@ pub struct MethodInfo {
     pub name: &'static str,
     /// The order of accuracy.
     pub order: u32,
-    /// What it keeps to round-off.
+    /// The quantities that it keeps to round-off.
     pub keeps: &'static str,
-    /// What it is.
+    /// A description.
     pub summary: &'static str,
     /// Where it comes from.
     pub reference: &'static str,

@@ -19,7 +19,7 @@ trait Shaped: Any + Send + Sync {
     fn save(&self, checkpoint: &mut Checkpoint);
     fn reversed(&self) -> AnyState;
     fn cloned(&self) -> AnyState;
-    /// Whether it became the other one, of the same shape.
+    /// Copies the other state if it has the same shape; returns whether it has.
     fn becomes(&mut self, other: &dyn Any) -> bool;
 }
 
@@ -95,7 +95,7 @@ impl AnyState {
         q
     }
 
-    /// Writes the same into a slice of its length.
+    /// Writes [`unwrapped`](Self::unwrapped) into a slice of its length.
     pub fn unwrap_into(&self, q: &mut [f64]) {
         self.0.unwrap_into(q);
     }
@@ -105,7 +105,7 @@ impl AnyState {
         self.0.move_into(&*before.0, moved);
     }
 
-    /// The same as a list.
+    /// As [`move_into`](Self::move_into), as a list.
     #[must_use]
     pub fn moved_since(&self, before: &Self) -> Vec<f64> {
         let mut moved = vec![0.0; self.q().len()];
@@ -124,7 +124,7 @@ impl AnyState {
         self.0.save(checkpoint);
     }
 
-    /// The state of a shape; none where it is of another one.
+    /// The state as one of `N` coordinates; `None` if it has another shape.
     #[must_use]
     #[inline]
     pub fn typed<const N: usize>(&self) -> Option<&State<N>> {
@@ -132,7 +132,7 @@ impl AnyState {
         state.downcast_ref()
     }
 
-    /// The same, to be changed.
+    /// As [`typed`](Self::typed), to be changed.
     #[inline]
     pub fn typed_mut<const N: usize>(&mut self) -> Option<&mut State<N>> {
         let state: &mut dyn Any = &mut *self.0;
@@ -145,7 +145,7 @@ impl Clone for AnyState {
         self.0.cloned()
     }
 
-    /// Without an allocation where both are of one shape.
+    /// Without an allocation if both are of one shape.
     fn clone_from(&mut self, source: &Self) {
         let other: &dyn Any = &*source.0;
         if !self.0.becomes(other) {
