@@ -106,7 +106,7 @@ impl Method {
     }
 
     /// The same method for the tolerance of a run, if there is one. An adaptive method aims for it in each of its steps. Any other method
-    /// is unchanged; [`recommend`](crate::recommend) finds its step.
+    /// is unchanged; `harness::recommend` finds its step.
     ///
     /// # Errors
     /// As [`with_tolerance`](Self::with_tolerance).

@@ -17,7 +17,7 @@ pub fn again(
     let mut last = LastReport { report: Report::default(), work };
     let schedule = Schedule { t0: t, step: h, steps: 1 };
     let mut integrator = system.integrator(method);
-    substepped_part(system, &mut *integrator, method.substeps(), &schedule, 0..1, state, &mut last)
+    let part = substepped_part(system, &mut *integrator, method.substeps(), &schedule, 0..1, state, &mut last)
         .map_err(|error| error.source)?;
-    Ok(last.report)
+    if part.made == 1 { Ok(last.report) } else { Err(StepError::Stopped) }
 }
