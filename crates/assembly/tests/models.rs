@@ -37,7 +37,7 @@ fn static_end<Sys: System<N, M>, const N: usize, const M: usize>(
 #[test]
 fn roller_racer() {
     let (m, i1, i2, d1, d2) = (1.0, 0.5, 0.2, 0.7, 0.4);
-    let small = RollerRacer { m: m, I1: i1, I2: i2, d1: d1, d2: d2 };
+    let small = RollerRacer { m, I1: i1, I2: i2, d1, d2 };
     let (q, v) = small.start();
     let expected = static_end(&small, (q, v));
 
@@ -83,7 +83,7 @@ impl Joint<3, 1> for Opposite {
 #[test]
 fn snakeboard() {
     let (m, l, j, j_r, j_w) = (1.2, 0.5, 0.1, 0.05, 0.02);
-    let small = Snakeboard { m: m, l: l, J: j, Jr: j_r, Jw: j_w };
+    let small = Snakeboard { m, l, J: j, Jr: j_r, Jw: j_w };
     let (q, v) = small.start();
     let expected = static_end(&small, (q, v));
 

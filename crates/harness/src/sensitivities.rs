@@ -75,11 +75,8 @@ pub fn sensitivities(
 ) -> Result<Vec<Moving>, SensitivitiesError> {
     let Request { schedule, q, v, .. } = request;
     let (method, system) = (&method.undivided(), family.mechanism());
-    match has_derivatives(method) {
-        Err(SensitivityError::Unsupported { reason }) => {
-            return Err(SensitivitiesError::Method { method: method.info().name, reason });
-        }
-        Err(_) | Ok(()) => {}
+    if let Err(SensitivityError::Unsupported { reason }) = has_derivatives(method) {
+        return Err(SensitivitiesError::Method { method: method.info().name, reason });
     }
     let jumps = system.jump_times(schedule.t0, schedule.time(schedule.steps));
     if let Some(time) = jumps.into_iter().min_by(f64::total_cmp) {

@@ -55,11 +55,19 @@ pub struct Subject<'a, const N: usize, const M: usize> {
 /// its shape costs none of this code.
 struct Shaped<const N: usize, const M: usize> {
     stepper: for<'b> fn(&Method, &'b dyn OwnMethods<N, M>, f64) -> Stepper<'b, N, M>,
-    field: fn(&dyn Gradients<N, M>, f64, &[f64; N], &[f64; N]) -> Option<Result<ReducedField, Singular>>,
-    flow: fn(&dyn SeededMechanics<N, M>, f64, &[Seeded; N], &[Seeded; N]) -> Option<[[Seeded; N]; 2]>,
+    field: FieldOf<N, M>,
+    flow: FlowOf<N, M>,
     differentiable: fn(&Method) -> Result<Box<dyn Differentiable<N, M>>, SensitivityError>,
     derivative: StepDerivativeOf<N, M>,
 }
+
+/// The reduced equations with their derivatives at a point.
+type FieldOf<const N: usize, const M: usize> =
+    fn(&dyn Gradients<N, M>, f64, &[f64; N], &[f64; N]) -> Option<Result<ReducedField, Singular>>;
+
+/// The reduced equations on numbers with derivatives.
+type FlowOf<const N: usize, const M: usize> =
+    fn(&dyn SeededMechanics<N, M>, f64, &[Seeded; N], &[Seeded; N]) -> Option<[[Seeded; N]; 2]>;
 
 /// The derivative of a step of a method on a system.
 type StepDerivativeOf<const N: usize, const M: usize> = fn(
@@ -293,10 +301,10 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
     fn near(&self, t: f64, q: &[f64], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanism)) -> bool {
         match self.with_derivatives() {
             Some(system) => system.near_seeded(t, &row(q), basis, &mut |number, near| {
-                then(number, &self.other(Held::Seeded(near), &(), self.at))
+                then(number, &self.other(Held::Seeded(near), &(), self.at));
             }),
             None => self.system().near(t, &row(q), basis, &mut |number, near| {
-                then(number, &self.other(Held::Smooth(near), &(), self.at))
+                then(number, &self.other(Held::Smooth(near), &(), self.at));
             }),
         }
     }

@@ -91,7 +91,7 @@ impl EventInterval<'_> {
     fn rounding(&self, event: &Event<'_>, at: f64, state: &AnyState) -> f64 {
         let (t, off) = (self.time(at), ROUNDINGS * f64::EPSILON);
         let moved = |sign: f64| {
-            let factor = |i: usize| 1.0 + off * if i % 2 == 0 { 1.0 } else { sign };
+            let factor = |i: usize| 1.0 + off * if i.is_multiple_of(2) { 1.0 } else { sign };
             let near = |x: &[f64]| -> Vec<f64> { x.iter().enumerate().map(|(i, x)| x * factor(i)).collect() };
             event.value_at(t * (1.0 + off), &near(&state.unwrapped()), &near(state.v()))
         };
