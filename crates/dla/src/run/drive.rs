@@ -79,7 +79,7 @@ pub trait Observer {
         ControlFlow::Continue(())
     }
 
-    /// Whether it wants the [work](StepReport::work) of steps; methods measure it only on request.
+    /// Whether it wants the [work](Report::work) of steps; methods measure it only on request.
     fn measures_work(&self) -> bool {
         false
     }

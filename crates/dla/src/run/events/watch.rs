@@ -13,7 +13,7 @@ const AT_START: f64 = 64.0;
 /// state repeats the step as its first one.
 ///
 /// Each step is sampled in [`samples`](Self::samples) parts, and once beyond each of its ends, which costs `samples + 1` steps more. A
-/// method with steps of its own within a step ([`OneStep::own_steps`]) is sampled so in each of them, which costs one step more. No
+/// method with steps of its own within a step ([`OneStep::own_steps`](crate::OneStep::own_steps)) is sampled so in each of them, which costs one step more. No
 /// crossing is missed while between neighbouring samples each function is monotone, or has one extremum and falls there to zero by no more
 /// than eight times what the parabola through the samples does; in particular, two crossings within a step are found. If a function bends
 /// more than that between samples, as a fast function of the time does, it is sampled in more parts, up to 2^14, on a cubic through the
