@@ -129,7 +129,7 @@ fn advanced<const N: usize, const M: usize>(
     Some(())
 }
 
-// Compiled twice in a build for any x86-64, as the loop over steps is (`drive_part`).
+// Compiled twice in a build for any x86-64: the second has the instructions of AVX2.
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
 fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
