@@ -1,4 +1,4 @@
-//! What `noslip precision` measures, of a system or of a train.
+//! What `noslip precision` measures.
 
 use harness::precision::{Clock, Curve};
 

@@ -1,4 +1,4 @@
-//! What the run of a system and of a train have in common: what made its rows, what tells it from others, and where its output goes.
+//! The rows of a run: what made them, what tells the run from others, and where its output goes.
 
 use crate::args::RunArguments;
 use crate::command_line::CommandLine;
@@ -35,12 +35,7 @@ pub(crate) fn provenance(
     Provenance::on((title, text), Some(&command), notes)
 }
 
-/// A scene as its provenance tells it: with the numbers as they were used, whatever the command line said instead of the file.
-pub(crate) fn of(scene: &Scene) -> (&str, &RunSettings, Option<String>) {
-    (&scene.title, &scene.run, scene.to_toml().ok())
-}
-
-/// What tells the run of a sleigh or of a train from others.
+/// What tells the run of a sleigh from others.
 pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
     // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
     if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {

@@ -5,9 +5,7 @@ mod text;
 
 use crate::error::CliError;
 use crate::notes;
-use scene::AnyScene;
-
-pub(crate) use sleigh::listed as of_sleigh;
+use scene::{AnyScene, SceneSystem};
 
 /// What a scene says.
 pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
@@ -16,7 +14,7 @@ pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
         AnyScene::Text(scene) => return Ok(text::listed(scene)),
     };
     Ok(match scene.train()? {
-        Some((train, start)) => sleigh::listed(scene, &scene.start, train.assembly.energy(0.0, &start), ""),
+        Some((train, (q, v))) => sleigh::listed(scene, &scene.start, train.mechanism().energy(0.0, &q, &v), ""),
         None => sleigh::of(scene)?,
     })
 }

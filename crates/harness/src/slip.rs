@@ -11,8 +11,6 @@ pub(crate) struct Slip {
     before: Option<(f64, AnyState)>,
     /// The mean velocity of a step.
     mean: Vec<f64>,
-    /// A configuration with its turns.
-    place: Vec<f64>,
     step: f64,
     /// The largest of the functions of the positions, where there are any.
     leaf: Option<f64>,
@@ -25,7 +23,6 @@ impl Slip {
             h,
             before: None,
             mean: Vec::new(),
-            place: Vec::new(),
             step: 0.0,
             leaf: None,
         }
@@ -40,7 +37,10 @@ impl Slip {
     }
 
     pub(crate) fn start(&mut self, node: &View<'_>) {
-        self.look(node);
+        // At the functions `g(q, t)` whose rates are constraints.
+        if let Some(g) = node.position() {
+            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g));
+        }
         self.resume(node);
     }
 
@@ -82,15 +82,6 @@ impl Slip {
         self.start(node);
     }
 
-    /// At the functions `g(q, t)` whose rates are constraints.
-    fn look(&mut self, node: &View<'_>) {
-        self.place.resize(node.state.q().len(), 0.0);
-        node.state.unwrap_into(&mut self.place);
-        if let Some(g) = node.system.largest_position(node.t, &self.place) {
-            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g));
-        }
-    }
-
     /// Writes it to a checkpoint; the node before is the state there.
     pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
         checkpoint.put("slip", &[self.step]);
@@ -101,6 +92,6 @@ impl Slip {
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [step] = checkpoint.get("slip")?;
         let leaf = checkpoint.list("leaf")?.first().copied();
-        Ok(Self { rules: self.rules, h: self.h, before: None, mean: Vec::new(), place: Vec::new(), step, leaf })
+        Ok(Self { rules: self.rules, h: self.h, before: None, mean: Vec::new(), step, leaf })
     }
 }

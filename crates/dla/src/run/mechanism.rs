@@ -51,24 +51,21 @@ pub trait Mechanism {
     /// The largest of these.
     fn largest_residual(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
-    /// The largest residual of the discrete constraint of a step from `q` with the mean velocity `v`.
+    /// The largest residual of the discrete constraint of a step from `q` with the mean velocity `v`; not a number where it is not known.
     fn largest_step_residual(&self, rules: &Rules, time: (f64, f64), q: &[f64], v: &[f64]) -> f64;
 
     /// The largest of the functions of the constraints on positions; none where there are none.
-    fn largest_position(&self, t: f64, q: &[f64]) -> Option<f64>;
+    fn largest_position(&self, t: f64, state: &AnyState) -> Option<f64>;
 
     /// What the constraints on positions miss, each with its gradient, rounding being zero.
     fn position_misses(&self, t: f64, q: &[f64]) -> Vec<(f64, Vec<f64>)>;
 
-    /// The first constraint that a velocity does not obey, as [`StepError::Slips`].
-    fn slip(&self, t: f64, state: &AnyState) -> Option<StepError>;
-
     /// Where a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there
-    /// ([`onto_constraint`](crate::onto_constraint())).
+    /// ([`onto_constraint`](crate::onto_constraint())); `time` has the length of the steps from there, too.
     ///
     /// # Errors
     /// [`StepError::Newton`] where the constraints do not determine the velocity.
-    fn onto_constraint(&self, t: f64, state: &mut AnyState) -> Result<(), StepError>;
+    fn onto_constraint(&self, time: (f64, f64), state: &mut AnyState) -> Result<(), StepError>;
 
     /// The error of a step from a state, with what is known of its cause.
     fn explained(&self, time: (f64, f64), state: &AnyState, error: StepError) -> StepError;

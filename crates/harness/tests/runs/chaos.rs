@@ -3,9 +3,7 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::{FullMechanics, Gauss, Schedule, Sensitivity, State, Subject, has_tangents};
 use harness::Method;
-use harness::analysis::{
-    Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, kaplan_yorke, lyapunov,
-};
+use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, kaplan_yorke, lyapunov};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System, With};
 use nalgebra::DMatrix;
 use sleigh::effects::{Bowl, EggCrate};

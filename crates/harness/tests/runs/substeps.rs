@@ -117,7 +117,11 @@ fn check_checkpoints(names: &[&str], length: Length) {
         // Some of whose steps are divided: those of order 8 may be longer.
         let step = if name == "gauss8" { 0.6 } else { 0.15 };
         let (whole, checkpoints) = saved(&method, length, step, None, &mut ());
-        assert_eq!(bits(&whole), bits(&run(&Subject::from(&system()), &method, &request(length.0, step), &mut ())), "{name}");
+        assert_eq!(
+            bits(&whole),
+            bits(&run(&Subject::from(&system()), &method, &request(length.0, step), &mut ())),
+            "{name}"
+        );
         assert!(name == "dop853" || whole.substeps.unwrap().divided > 0, "{name}");
         assert_eq!(checkpoints.len() as u64, length.0.div_ceil(length.1), "{name}");
         for checkpoint in &checkpoints {

@@ -141,7 +141,8 @@ fn on_a_ridge_a_sleigh_runs_away_in_full() {
     let (ridge, start) = ridge();
     let by_gauss8 = |settle: u64, steps: u64, count: usize| {
         let schedule = Schedule { t0: 0.0, step: 0.05, steps };
-        let request = LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0.into(), v: start.1.into() };
+        let request =
+            LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0.into(), v: start.1.into() };
         let method = Method::named("gauss8", None).unwrap();
         lyapunov(&Subject::new(&ridge, &()), (3, 1), &method, &request, &mut ()).unwrap()
     };
