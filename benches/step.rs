@@ -6,8 +6,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use criterion::{Criterion, criterion_group};
-use dla::{Dla, Form, OneStep, Schedule, State, drive};
-use harness::{Rk4, Rk4Projected, Rk4Reduced};
+use dla::{Dla, Form, OneStep, Rk4, Rk4Projected, Rk4Reduced, Schedule, State, drive};
 use lagrangian::{System, With};
 use sleigh::effects::{Bowl, Drag};
 use sleigh::{ClosedMap, Sleigh, SleighState};

@@ -10,11 +10,12 @@
 #[path = "text/systems.rs"]
 mod systems;
 
-use harness::precision::{LEVELS, PrecisionPoint};
-use noslip::prelude::{Piecewise, System};
+use dla::{Mechanism, PiecewiseMechanics};
+use harness::Method;
+use harness::precision::{Bench, LEVELS, LadderLimits, PrecisionPoint, Reference, ReferenceMotion, work_precision};
+use lagrangian::linear::larger;
 use noslip::{PrecisionError, WorkPrecision};
-use scene::{AnyScene, Built, Visitor};
-use std::array::from_fn;
+use scene::{AnyScene, BuiltScene};
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -22,15 +23,23 @@ const METHODS: [&str; 5] = ["gauss-adaptive", "gauss16", "gauss8", "dla", "rk4-r
 /// The longest run of a ladder (s).
 const LONGEST: f64 = 0.02;
 
-/// Measures a scene.
-struct Tape(f64);
-
-impl Visitor for Tape {
-    type Output = Result<WorkPrecision, PrecisionError>;
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        noslip::precision(&system, &METHODS, (q, v), self.0, LONGEST)
-    }
+/// Measures a system from a start.
+fn measured(
+    system: &dyn Mechanism,
+    methods: &[&str],
+    (q, v): (&[f64], &[f64]),
+    duration: f64,
+) -> Result<WorkPrecision, PrecisionError> {
+    let methods = methods.iter().map(|name| Method::named(name, None)).collect::<Result<Vec<_>, _>>()?;
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
+    let motion = ReferenceMotion::new(system, q, v, duration);
+    let reference = Reference::converged(&motion, &apart)?;
+    let end_error = |method: &Method, steps: u64| motion.end(method, steps).map(|q| apart(&q, &reference.q));
+    let aligned = |steps: u64| motion.aligned(steps);
+    let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
+    let limits = LadderLimits { fewest: motion.aligned(2), longest: LONGEST };
+    let (curves, _) = work_precision(&bench, &methods, &limits, &mut ());
+    Ok(WorkPrecision { curves, reference_error: reference.error })
 }
 
 /// The geometric mean of the ratios of times of points that are of the same steps or tolerance.
@@ -45,11 +54,12 @@ fn ratio(tape: &[PrecisionPoint], compiled: &[PrecisionPoint]) -> Option<f64> {
 }
 
 /// Measures a system in both forms, and prints its row.
-fn row<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(name: &str, system: &Sys) {
+fn row<const N: usize, const M: usize>(name: &str, system: &impl PiecewiseMechanics<N, M>) {
     let scene = load(name);
     let duration = scene.run().duration;
-    let tape = scene.visit(Tape(duration)).expect("a system");
-    let compiled = noslip::precision(system, &METHODS, start(&scene), duration, LONGEST);
+    let built = scene.built().expect("a system");
+    let tape = measured(&*built.system().mechanism(), &METHODS, (&built.q, &built.v), duration);
+    let compiled = noslip::precision(system, &METHODS, start(&built), duration, LONGEST);
     let (tape, compiled) = match (tape, compiled) {
         (Ok(tape), Ok(compiled)) => (tape, compiled),
         (Err(error), _) | (_, Err(error)) => return println!("| `{name}` | {error} |"),
@@ -70,26 +80,15 @@ fn row<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(name: &str
     println!();
 }
 
-/// Tells the start of a scene.
-struct Start;
-
-impl Visitor for Start {
-    type Output = (Vec<f64>, Vec<f64>);
-
-    fn visit<const N: usize, const M: usize>(self, _: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        (q.to_vec(), v.to_vec())
-    }
-}
-
 /// The start of a scene for the compiled system: a shape with more coordinates than the system has them first.
-fn start<const N: usize>(scene: &AnyScene) -> ([f64; N], [f64; N]) {
-    let (q, v) = scene.visit(Start).expect("a system");
-    (from_fn(|i| q[i]), from_fn(|i| v[i]))
+fn start<const N: usize>(scene: &BuiltScene) -> ([f64; N], [f64; N]) {
+    let of = |x: &[f64]| *x.first_chunk().expect("as many coordinates");
+    (of(&scene.q), of(&scene.v))
 }
 
 /// Measures the compiled system from the start of a scene, and prints its points as `noslip precision --json` does.
-fn points<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(race: &Race, system: &Sys) {
-    let start = start(&load(&race.scene));
+fn points<const N: usize, const M: usize>(race: &Race, system: &impl PiecewiseMechanics<N, M>) {
+    let start = start(&load(&race.scene).built().expect("a system"));
     let methods: Vec<&str> = race.methods.iter().map(String::as_str).collect();
     let measured = noslip::precision(system, &methods, start, race.duration, LONGEST).expect("a reference");
     let point = |point: &PrecisionPoint| {

@@ -1,8 +1,8 @@
 use super::Case;
-use super::systems::{bowl, drag, egg_crate, from, go, sleigh, start, three, with};
-use dla::{Dla, Gauss, Mechanics};
+use super::systems::{BOWL, bowl, built, drag, egg_crate, from, go, schedule, sleigh, start, three, with};
+use dla::{Dla, Gauss, Mechanics, make_steps};
 use lagrangian::With;
-use scene::{AnyEffect, Built, Scene, Visitor};
+use scene::AnyEffect;
 use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, SleighState};
 use std::hint::black_box;
@@ -57,7 +57,6 @@ pub(super) fn cases() -> Vec<Case> {
     ]
 }
 
-const BOWL: &str = "\n[[effects]]\nkind = \"bowl\"\nstiffness = [0.1, 0.1]\n";
 const FLYWHEEL: &str = "\n[[effects]]\nkind = \"flywheel\"\ninertia = 0.5\nrotor_rate = 2.0\n";
 const SERVO: &str = "\n[[effects]]\nkind = \"servo\"\nspeed = 0.7\n";
 const TURNTABLE: &str = "\n[[effects]]\nkind = \"turntable\"\nrate = 0.2\n";
@@ -84,17 +83,10 @@ fn gauss(system: &dyn Mechanics<3, 1>, steps: u64) {
 
 /// The same through a scene file.
 fn scene(effects: &str, steps: u64) {
-    let text = Scene::template().split("[[effects]]").next().expect("a first part").to_owned() + effects;
-    let scene = Scene::parse(&text, "bench.toml", &["dla"]).expect("a valid scene");
-    scene.visit(Steps(steps)).expect("a valid scene");
-}
-
-struct Steps(u64);
-
-impl Visitor for Steps {
-    type Output = ();
-
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) {
-        from(&*system, Dla::midpoint(), self.0, (black_box(q), black_box(v)));
-    }
+    let built = built(effects);
+    let system = built.system().mechanism();
+    let mut state = system.state(black_box(&built.q), black_box(&built.v));
+    make_steps(&*system, &mut *system.general_map(), &schedule(steps), 0..steps, &mut state, &mut ())
+        .expect("the steps succeed");
+    black_box(state);
 }

@@ -1,6 +1,6 @@
 use dla::{Mechanics, OneStep, Schedule, State, drive};
 use lagrangian::With;
-use scene::AnyEffect;
+use scene::{AnyEffect, BuiltScene, Scene};
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
 use std::hint::black_box;
@@ -29,6 +29,14 @@ pub(super) fn egg_crate() -> EggCrate {
 
 pub(super) fn three() -> Vec<AnyEffect> {
     vec![AnyEffect::Bowl(bowl()), AnyEffect::Drag(drag()), AnyEffect::EggCrate(egg_crate())]
+}
+
+pub(super) const BOWL: &str = "\n[[effects]]\nkind = \"bowl\"\nstiffness = [0.1, 0.1]\n";
+
+/// The turn-around with these effects, through a scene file.
+pub(super) fn built(effects: &str) -> BuiltScene {
+    let text = Scene::template().split("[[effects]]").next().expect("a first part").to_owned() + effects;
+    Scene::parse(&text, "bench.toml", &["dla"]).expect("a valid scene").built().expect("a valid scene")
 }
 
 pub(super) fn schedule(steps: u64) -> Schedule {

@@ -22,7 +22,7 @@ fn growth(speed: f64) -> Result<f64, Box<dyn Error>> {
     let (q, v) = ([0.0; 8], [speed, 0.0, 0.0, 1e-6, 0.0, 0.0, -speed / REAR, -speed / FRONT]);
     let start = consistent_start(&Bicycle, 0.0, &q, &v)?;
     let mut state = State::new(start.q, start.v, Bicycle.angles());
-    let mut nodes = Trajectory::<8, 5>::every(1);
+    let mut nodes = Trajectory::every(1);
     let schedule = Schedule { t0: 0.0, step: STEP, steps: (END / STEP) as u64 };
     drive(&Bicycle, &mut Composition::suzuki4(Dla::midpoint()), &schedule, &mut state, &mut nodes)?;
 

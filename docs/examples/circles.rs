@@ -2,8 +2,10 @@
 //!
 //! `cargo run --example circles [FOLDER]`; the folder receives the two pictures.
 
+use noslip::dla::Node;
 use noslip::{Dla, Exact, RunError, Schedule, Sleigh, SleighState, State, System, Trajectory, drive};
 use report::{Chart, Layer, SceneReport, Series, chart_svg, path_picture};
+use std::array::TryFromSliceError;
 use std::fs;
 use std::path::Path;
 
@@ -11,7 +13,7 @@ const OFFSETS: [f64; 5] = [0.5, 0.2, 0.05, 0.01, 0.0];
 const START: SleighState = SleighState { x: 0.0, y: 0.0, heading: 0.0, speed: 1.0, turn_rate: 0.5 };
 
 /// The nodes of a run of `seconds` in steps of 0.05 s, one of them in every `every`.
-fn nodes(sleigh: &Sleigh, seconds: u64, every: u64) -> Result<Trajectory<3, 1>, RunError> {
+fn nodes(sleigh: &Sleigh, seconds: u64, every: u64) -> Result<Trajectory, RunError> {
     let (q, v) = START.to_coordinates();
     let mut state = State::new(q, v, sleigh.angles());
     let mut trajectory = Trajectory::every(every);
@@ -25,6 +27,11 @@ fn curvature(state: &SleighState) -> f64 {
     state.turn_rate / state.speed
 }
 
+/// The same at a node.
+fn bent(node: &Node) -> Result<f64, TryFromSliceError> {
+    Ok(curvature(&SleighState::from_coordinates(node.q[..].try_into()?, node.v[..].try_into()?)))
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("curvature w/u [1/m]; error: the largest difference from the closed form");
     println!("  a [m]       0 s      10 s      20 s      40 s      80 s     160 s      error   turn to come [rad]");
@@ -36,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut error = 0.0f64;
         print!("{offset:7.2}");
         for node in trajectory.nodes() {
-            let bent = curvature(&SleighState::from_coordinates(&node.q, &node.v));
+            let bent = bent(node)?;
             error = error.max((bent - curvature(&exact.at(node.t))).abs());
             if [0.0, 10.0, 20.0, 40.0, 80.0, 160.0].iter().any(|t| (node.t - t).abs() < 1e-6) {
                 print!(" {bent:9.2e}");
@@ -48,8 +55,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
         let path = nodes(&sleigh, 40, 4)?;
         let path = path.nodes();
-        let bent = path.iter().map(|node| [node.t, curvature(&SleighState::from_coordinates(&node.q, &node.v))]);
-        curves.push(Layer::Curves { label: format!("a = {offset} m"), curves: vec![bent.collect()] });
+        let bent = path.iter().map(|node| Ok([node.t, bent(node)?])).collect::<Result<_, TryFromSliceError>>()?;
+        curves.push(Layer::Curves { label: format!("a = {offset} m"), curves: vec![bent] });
         dots.extend((0..=20).map(|k| 2.0 * f64::from(k)).map(|t| vec![[t, curvature(&exact.at(t))]]));
         series.push(Series {
             label: format!("a = {offset} m"),

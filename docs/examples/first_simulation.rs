@@ -12,12 +12,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, sleigh.angles());
-    let mut trajectory = Trajectory::<3, 1>::every(100);
+    let mut trajectory = Trajectory::every(100);
     drive(&sleigh, &mut Dla::midpoint(), &Schedule { t0: 0.0, step: 0.05, steps: 800 }, &mut state, &mut trajectory)?;
 
     println!("   t [s]   speed [m/s]   heading [rad]   from the exact motion [m]   constraint [m/s]");
     for node in trajectory.nodes() {
-        let now = SleighState::from_coordinates(&node.q, &node.v);
+        let now = SleighState::from_coordinates(node.q[..].try_into()?, node.v[..].try_into()?);
         let there = exact.at(node.t);
         let error = (now.x - there.x).hypot(now.y - there.y);
         println!("{:8.1} {:13.6} {:15.6} {error:27.1e} {:18.1e}", node.t, now.speed, now.heading, node.constraint);

@@ -2,8 +2,7 @@
 //!
 //! `cargo run --example naive_methods [FOLDER]`; the folder receives a report with the pictures.
 
-use harness::{Rk4, Rk4Projected};
-use noslip::dla::{Composition, onto_constraint};
+use noslip::dla::{Composition, Rk4, Rk4Projected, onto_constraint};
 use noslip::sleigh::effects::Bowl;
 use noslip::{
     Dla, OneStep, Schedule, Sleigh, SleighError, SleighState, State, StepError, StepReport, System, Trajectory, With,
@@ -63,7 +62,7 @@ const LOST: f64 = 1e3;
 fn series<M: OneStep<3, 1>>(basin: &Basin, start: &SleighState, label: &str, mut method: M) -> Series {
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, basin.angles());
-    let mut trajectory = Trajectory::<3, 1>::every(1);
+    let mut trajectory = Trajectory::every(1);
     let schedule = Schedule { t0: 0.0, step: STEP, steps: (DURATION / STEP) as u64 };
     // A run that fails is lost too: its last nodes are infinite in all but name.
     let _ended = drive(basin, &mut method, &schedule, &mut state, &mut trajectory);

@@ -37,7 +37,7 @@ fn exact(gravity: f64, t: f64) -> [f64; 2] {
 /// The distance from the closed form at the end (m), and the largest residual of the constraint (m/s).
 fn errors<M: OneStep<3, 1>>(skate: &Skate, mut method: M, steps: u64) -> Result<[f64; 2], RunError> {
     let mut state = State::new([0.0; 3], [0.0, 0.0, TURN_RATE], skate.angles());
-    let mut nodes = Trajectory::<3, 1>::every(1);
+    let mut nodes = Trajectory::every(1);
     let schedule = Schedule { t0: 0.0, step: DURATION / steps as f64, steps };
     drive(skate, &mut method, &schedule, &mut state, &mut nodes)?;
     let [x, y] = exact(skate.gravity, DURATION);

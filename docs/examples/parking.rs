@@ -2,8 +2,8 @@
 //!
 //! `cargo run --example parking [FILE.svg]`; without a file only the plan is printed.
 
-use dla::{Dla, Piece, Schedule, State, Trajectory, drive_part, piece_by_piece};
-use lagrangian::System;
+use dla::{Mechanism, Method, Schedule, Subject, Trajectory};
+use harness::integrate_pieces;
 use report::{SceneReport, Series, path_picture};
 use sleigh::parking::{Gap, Move, ParkingPlan};
 use sleigh::{Guided, Sleigh, SleighState};
@@ -30,12 +30,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [speed, turn_rate] = plan.controls(MOVE.0)?;
     let servo = Guided::<2>::servo(Sleigh::new(1.0, 1.0, 0.5)?, speed, turn_rate)?;
     let schedule = Schedule { t0: 0.0, step: MOVE.0 / MOVE.1 as f64, steps: MOVE.1 * plan.moves.len() as u64 };
-    let mut state = State::new(start.to_coordinates().0, [0.0; 3], System::<3, 3>::angles(&servo));
-    let mut nodes = Trajectory::<3, 3>::every(1);
-    piece_by_piece(&servo, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
-        drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, &mut nodes)
-    })?;
-    let [x, y, heading] = state.unwrapped();
+    let system = Subject::<3, 3>::from(&servo);
+    let mut state = system.state(&start.to_coordinates().0, &[0.0; 3]);
+    let mut nodes = Trajectory::every(1);
+    integrate_pieces(&system, &Method::named("dla", None)?, &schedule, &mut state, &mut nodes)?;
+    let [x, y, heading] = state.unwrapped()[..].try_into()?;
     let slip = nodes.nodes().iter().map(|node| node.constraint).fold(0.0, f64::max);
     println!(
         "ends {:.1e} m and {:.1e} rad from the goal",

@@ -51,11 +51,11 @@ fn a_start_that_slips() {
     );
     assert_eq!(*state.v(), v);
     let start = consistent_start(&sleigh, 0.0, &q, &v).unwrap();
-    let mut nodes = Trajectory::<3, 1>::every(10);
+    let mut nodes = Trajectory::every(10);
     let mut state = State::new(start.q, start.v, sleigh.angles());
     drive(&sleigh, &mut method!("dla"), &schedule, &mut state, &mut nodes).unwrap();
     let mut text = Vec::new();
-    nodes.write_csv(&mut text, ["x", "y", "theta"]).unwrap();
+    nodes.write_csv(&mut text, &["x", "y", "theta"]).unwrap();
     let text = String::from_utf8(text).unwrap();
     let rows: Vec<&str> = text.lines().collect();
     assert_eq!((rows.len(), rows[0]), (4, "t,x,y,theta,x',y',theta',energy,work,constraint"));

@@ -1,6 +1,6 @@
 //! Systems as functions of their parameters: starts and steps against extrapolated differences.
 
-use dla::{Dla, OneStep, Sensitivity, State, Tangent, Variation};
+use dla::{Dla, OneStep, ParametrisedMechanics, Sensitivity, State, Tangent, Variation};
 use std::sync::Arc;
 use text::{FREE, Family, TextModel, TextStart, TextSystem, Unit, Varied, Words};
 

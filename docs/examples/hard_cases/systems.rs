@@ -3,9 +3,9 @@
 use crate::curves::Upright::Linear;
 use crate::curves::{curve, in_time, level, markers, upper_edge};
 use crate::program::Program;
-use dla::{Dla, Energy, Node, OneStep, Schedule, State, Trajectory, drive};
-use harness::Rk4Reduced;
+use dla::{Dla, Energy, Node, OneStep, Rk4Reduced, Schedule, State, Trajectory, drive};
 use lagrangian::System;
+use report::Chart;
 use sleigh::{Exact, Sleigh, SleighState};
 use std::error::Error;
 use std::f64::consts::PI;
@@ -39,7 +39,7 @@ fn nodes<Sys: System<3, M>, const M: usize>(
     mut method: impl OneStep<3, M>,
     (q, v): ([f64; 3], [f64; 3]),
     (step, steps): (f64, u64),
-) -> Vec<Node<3, M>> {
+) -> Vec<Node> {
     let mut state = State::new(q, v, system.angles());
     let mut trajectory = Trajectory::every(1);
     // A refusal is part of the picture.
@@ -84,8 +84,8 @@ pub(crate) fn dropping_row(_program: &Program) -> Drawn {
 pub(crate) fn pseudo_holonomic(_program: &Program) -> Drawn {
     let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).pseudo_holonomic();
     let (start, steps) = (pendulum.state_at(1.2, 0.3), (0.1, 20_000));
-    let off = |nodes: Vec<Node<3, 2>>| {
-        let hinge = |node: &Node<3, 2>| pendulum.hinge(&node.q);
+    let off = |nodes: Vec<Node>| {
+        let hinge = |node: &Node| pendulum.hinge(&[node.q[0], node.q[1], node.q[2]]);
         upper_edge(nodes.iter().map(|node| [node.t, hinge(node)[0].hypot(hinge(node)[1])]))
     };
     let layers = vec![
@@ -101,8 +101,8 @@ pub(crate) fn gauge(_program: &Program) -> Drawn {
     let steps = (2.0 * (PI / 40.0).sin(), 100_000);
     let with = ContactOscillator { s: 1.0, ..without };
     // The mean over fifty periods of `y`, so that what drifts is seen without what swings.
-    let drift = |label: &str, nodes: Vec<Node<3, 1>>| {
-        let mean = |part: &[Node<3, 1>]| part.iter().map(|node| node.energy - nodes[0].energy).sum::<f64>() / 2000.0;
+    let drift = |label: &str, nodes: Vec<Node>| {
+        let mean = |part: &[Node]| part.iter().map(|node| node.energy - nodes[0].energy).sum::<f64>() / 2000.0;
         curve(label, nodes.chunks_exact(2000).map(|part| [part[0].t, mean(part)]).collect())
     };
     let layers = vec![

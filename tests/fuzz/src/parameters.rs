@@ -4,9 +4,9 @@
 #![no_main]
 
 use arbitrary::Arbitrary;
-use dla::{Observer, Schedule, State, StepReport, View};
-use harness::{MethodKind, METHODS, Method, integrate};
-use lagrangian::{System, With};
+use dla::{AnyState, Mechanism, Observer, Report, Schedule, Subject, View, make_steps};
+use harness::{METHODS, Method, MethodKind};
+use lagrangian::With;
 use libfuzzer_sys::fuzz_target;
 use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
@@ -101,12 +101,12 @@ struct Case {
 /// Every node is finite and on the constraint.
 struct OnConstraint {
     keeps: bool,
-    before: State<3>,
+    before: AnyState,
 }
 
-impl Observer<3, 1> for OnConstraint {
-    fn start(&mut self, node: &View<'_, 3, 1>) {
-        self.before = *node.state;
+impl Observer for OnConstraint {
+    fn start(&mut self, node: &View<'_>) {
+        self.before.clone_from(node.state);
     }
 
     /// A node has `v = u (cos th, sin th)` but for the rounding of the sine, the cosine, the two products and those of the
@@ -114,12 +114,12 @@ impl Observer<3, 1> for OnConstraint {
     /// all of them. The angle of `v` is that before the turns are taken off, and has the
     /// rounding of a number of its size: at most half a turn more than the step turns. Where the turns are too many to be
     /// counted there is no telling.
-    fn step(&mut self, node: &View<'_, 3, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         let (q, v) = (node.state.q(), node.state.v());
         assert!(q.iter().chain(v).all(|x| x.is_finite()), "node {}: {q:?}, {v:?}", node.k);
         let turned = node.state.moved_since(&self.before)[2].abs();
         let counted = node.state.turns()[2].abs().max(self.before.turns()[2].abs()) < 1.0 / f64::EPSILON;
-        self.before = *node.state;
+        self.before.clone_from(node.state);
         let size: f64 = v.iter().map(|x| x.abs()).sum();
         let bound = f64::EPSILON * (4.0 + PI + turned) * size + 4.0 * f64::MIN_POSITIVE;
         let residual = node.constraint();
@@ -147,14 +147,16 @@ fn run(case: &Case) -> Result<(), Box<dyn std::error::Error>> {
     let info = METHODS[usize::from(case.method) % METHODS.len()];
     let method = Method::named(info.name, Some(f64::from(case.alpha) / 255.0))?;
     let (q, v) = SleighState { x, y, heading, speed, turn_rate }.to_coordinates();
-    let mut state = State::new(q, v, System::<3, 1>::angles(&system));
+    let system = Subject::<3, 1>::from(&system);
+    let mut state = system.state(&q, &v);
     // An adaptive one may make a hundred thousand steps within each.
     let most = if info.kind.is_adaptive() { 2 } else { 40 };
     let schedule = Schedule { t0: 0.0, step, steps: u64::from(case.steps % most) };
     // A projection leaves the rounding of the velocity before it: any number of times that of the velocity after it.
     let keeps = info.keeps.contains("constraint") && info.kind != MethodKind::Rk4Projected;
-    let mut watch = OnConstraint { keeps, before: state };
-    if let Err(failure) = integrate(&system, &method, &schedule, &mut state, &mut watch) {
+    let mut watch = OnConstraint { keeps, before: state.clone() };
+    let mut integrator = system.integrator(&method);
+    if let Err(failure) = make_steps(&system, &mut *integrator, &schedule, 0..schedule.steps, &mut state, &mut watch) {
         assert!(!failure.to_string().is_empty());
     }
     assert!(state.q().iter().chain(state.v()).all(|x| x.is_finite()));

@@ -1,19 +1,10 @@
 //! Scenes with trailers: assemblies.
 
-use scene::{Built, Scene, Visitor};
+use scene::Scene;
 use sleigh::SleighError;
 
 const METHODS: &[&str] = &["dla"];
 const TRAIN: &str = include_str!("../../../../docs/guide/train.toml");
-
-/// What has nothing to do with the system that it is given.
-struct Nothing;
-
-impl Visitor for Nothing {
-    type Output = ();
-
-    fn visit<const N: usize, const M: usize>(self, _system: Built<'_, N, M>, _q: [f64; N], _v: [f64; N]) {}
-}
 
 #[test]
 fn a_scene_with_trailers_is_a_train() {
@@ -30,8 +21,7 @@ fn a_scene_with_trailers_is_a_train() {
     let (level, _) = level.train().unwrap().unwrap();
     assert!(train.assembly.energy(0.0, &start) > level.assembly.energy(0.0, &start));
     // It is no static system, and another scene is no train.
-    assert_eq!(scene.visit(Nothing), Err(SleighError::Train));
-    assert_eq!(scene.visit_free(Nothing), Err(SleighError::Train));
+    assert_eq!(scene.built().err(), Some(SleighError::Train));
     assert!(Scene::load("turnaround", METHODS).unwrap().train().unwrap().is_none());
 }
 

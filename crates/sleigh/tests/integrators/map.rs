@@ -64,8 +64,8 @@ fn other_bodies_have_general_steps() {
     let schedule = Schedule { t0: 0.0, step: 0.1, steps: 50 };
     let (mut general, mut closed) = (start, start);
     let mut map = ClosedMap::of(table.clone());
-    drive::<_, _, 3, 1>(&table, &mut Dla::midpoint(), &schedule, &mut general, ()).unwrap();
-    drive::<_, _, 3, 1>(&table, &mut map, &schedule, &mut closed, ()).unwrap();
+    drive::<3, 1>(&table, &mut Dla::midpoint(), &schedule, &mut general, ()).unwrap();
+    drive::<3, 1>(&table, &mut map, &schedule, &mut closed, ()).unwrap();
     assert_eq!(general, closed);
 }
 

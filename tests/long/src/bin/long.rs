@@ -1,7 +1,7 @@
 //! `long METHOD STEPS [TURN_RATE]`: constraint and energy of `dla`, `energy4` or `gauss8` in the bowl, and how the energy
 //! error grows.
 
-use dla::{Dla, Energy, Gauss, Observer, Schedule, StepReport, View, drive};
+use dla::{Dla, Energy, Gauss, Observer, Report, Schedule, View, drive};
 use harness::{Blocks, Drift};
 use noslip_long::{STEP, bowl};
 use std::error::Error;
@@ -24,13 +24,13 @@ struct Watch {
     kept: Vec<f64>,
 }
 
-impl Observer<3, 1> for Watch {
-    fn start(&mut self, node: &View<'_, 3, 1>) {
+impl Observer for Watch {
+    fn start(&mut self, node: &View<'_>) {
         self.initial = node.energy();
         self.kept.push(0.0);
     }
 
-    fn step(&mut self, node: &View<'_, 3, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         let error = node.energy() - self.initial;
         self.constraint = self.constraint.max(node.constraint());
         self.error = self.error.max(error.abs());
@@ -84,9 +84,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut watch = Watch::default();
     let begin = Instant::now();
     match method.as_str() {
-        "dla" => drive(&system, &mut Dla::midpoint(), &schedule, &mut state, &mut watch)?,
-        "energy4" => drive(&system, &mut Energy::new::<2>(), &schedule, &mut state, &mut watch)?,
-        "gauss8" => drive(&system, &mut Gauss::new::<4>(), &schedule, &mut state, &mut watch)?,
+        "dla" => drive::<3, 1>(&system, &mut Dla::midpoint(), &schedule, &mut state, &mut watch)?,
+        "energy4" => drive::<3, 1>(&system, &mut Energy::new::<2>(), &schedule, &mut state, &mut watch)?,
+        "gauss8" => drive::<3, 1>(&system, &mut Gauss::new::<4>(), &schedule, &mut state, &mut watch)?,
         other => return Err(format!("`{other}` is none of dla, energy4, gauss8").into()),
     };
     println!("{method}: {} steps of {STEP} s in {:.0} s", schedule.steps, begin.elapsed().as_secs_f64());
