@@ -51,10 +51,10 @@ impl AssemblyState {
         &self.q
     }
 
-    /// A coordinate, an angle with its full turns.
+    /// The coordinates, angles with their full turns.
     #[must_use]
-    pub fn unwrapped(&self, i: usize) -> f64 {
-        self.coordinates[i].unwrapped()[0]
+    pub fn unwrapped(&self) -> Vec<f64> {
+        self.coordinates.iter().map(|one| one.unwrapped()[0]).collect()
     }
 
     /// The velocities.

@@ -5,17 +5,13 @@ mod text;
 
 use crate::error::CliError;
 use crate::notes;
-use scene::{AnyScene, SceneSystem};
+use scene::AnyScene;
 
 /// What a scene says.
 pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
-    let scene = match scene {
-        AnyScene::Sleigh(scene) => &**scene,
-        AnyScene::Text(scene) => return Ok(text::listed(scene)),
-    };
-    Ok(match scene.train()? {
-        Some((train, (q, v))) => sleigh::listed(scene, &scene.start, train.mechanism().energy(0.0, &q, &v), ""),
-        None => sleigh::of(scene)?,
+    Ok(match scene {
+        AnyScene::Sleigh(scene) => sleigh::of(scene)?,
+        AnyScene::Text(scene) => text::listed(scene),
     })
 }
 

@@ -46,6 +46,10 @@ impl Slip {
 
     /// Sees a node again where a smooth piece begins.
     pub(crate) fn resume(&mut self, node: &View<'_>) {
+        // What is not known stays so.
+        if self.step.is_nan() {
+            return;
+        }
         match &mut self.before {
             Some((t, state)) => {
                 *t = node.t;
@@ -72,7 +76,7 @@ impl Slip {
     }
 
     fn over(&mut self, node: &View<'_>, h: f64) {
-        if let Some((t, before)) = &self.before {
+        if let Some((t, before)) = self.before.as_ref().filter(|_| !self.step.is_nan()) {
             self.mean.resize(node.state.v().len(), 0.0);
             node.state.move_into(before, &mut self.mean);
             self.mean.iter_mut().for_each(|moved| *moved /= h);

@@ -29,7 +29,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`BuildError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
-    pub fn train(&self) -> Result<Option<(Train, StartPlace)>, BuildError> {
+    pub(crate) fn train(&self) -> Result<Option<(Train, StartPlace)>, BuildError> {
         let Some(spec) = self.trailers() else { return Ok(None) };
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let table_rate = self.table_rate().unwrap_or(0.0);

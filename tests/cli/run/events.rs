@@ -153,7 +153,11 @@ fn events_again(methods: &[&str], [step, long, short]: [&str; 3], every: u64, co
         // Others are another run.
         folder.refused("run scene.toml --resume part.save --step 0.01 --event x=0.06", &["part.save", "another run"]);
     }
-    folder.refused(&format!("run {TRAIN} --event x=0.5 --checkpoint t.save"), &["--checkpoint", "leave out x=0.5"]);
+    // So it is of a train.
+    let train = format!("run {TRAIN} --event x=0.05 --json --duration");
+    let whole = folder.json(&format!("{train} 0.1"));
+    folder.json(&format!("{train} 0.08 --checkpoint t.save"));
+    assert_eq!(folder.json(&format!("{train} 0.1 --resume t.save"))["events"], whole["events"]);
 }
 
 /// The speed is `cos 10 t` at any time: the place is `sin(10 t)/10`, and crosses 0.05 twenty times in 6 s.
