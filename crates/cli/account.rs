@@ -1,4 +1,4 @@
-//! What is the same of a run wherever its rows go, and whichever kind its scene is of.
+//! A run of a scene, shared by every output and every kind of scene.
 
 use crate::error::CliError;
 use crate::table::number;
@@ -15,7 +15,7 @@ pub(crate) struct Account<'a> {
     pub(crate) scene: &'a AnyScene,
     pub(crate) method: &'a Method,
     pub(crate) request: Request,
-    /// What is reported, and then what ends the run, `ends` of them.
+    /// The reported events, then the `ends` events that end the run.
     watched: Vec<WatchedTrigger<'a>>,
     ends: usize,
 }
@@ -23,16 +23,16 @@ pub(crate) struct Account<'a> {
 /// A run that was made.
 pub(crate) struct Made {
     pub(crate) record: Record,
-    /// What happened, where that was asked for.
+    /// The events found; `None` if no event is looked for.
     pub(crate) events: Option<Events>,
 }
 
 impl<'a> Account<'a> {
-    /// The run of a scene from its start, forward or backward in time, with the steps of the scene or the longest that meet a tolerance
-    /// (m or rad), whose `search` shows its steps; a method that chooses steps of its own is to aim for the tolerance already.
+    /// A run of `scene` from the state `(q, v)`, forward or backward in time. A `tolerance` (m or rad) replaces the scene's step by the
+    /// longest one that meets it, and `search` shows the trials. An adaptive method must already aim for the tolerance.
     ///
     /// # Errors
-    /// [`CliError`] where the system has no such quantity, or no step meets the tolerance.
+    /// [`CliError`] if the system has no such quantity, or no step meets the tolerance.
     pub(crate) fn new(
         system: &'a Built<'a>,
         (scene, method): (&'a AnyScene, &'a Method),
@@ -52,7 +52,7 @@ impl<'a> Account<'a> {
             return Err(CliError::Request(problem.to_owned()));
         }
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
-            // Of the method itself: parts would make any step look good enough.
+            // The step is chosen without substeps: they would make any step look good enough.
             let whole = method.undivided();
             let found = recommend(&*system.mechanism(), &whole, (q, v), (scene.run().duration, tolerance), search);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
@@ -62,7 +62,7 @@ impl<'a> Account<'a> {
         Ok(Self { system, scene, method, request, watched, ends: ending.len() })
     }
 
-    /// The first node, of which nothing but the state is known.
+    /// The first node; only its time and state are set.
     pub(crate) fn start(&self) -> Node {
         let Request { schedule, q, v, .. } = &self.request;
         let (q, v) = (q.clone(), v.clone());
@@ -76,7 +76,7 @@ impl<'a> Account<'a> {
         reported.iter().map(|watched| watched.event(self.system)).chain(ends).collect()
     }
 
-    /// The events and the samples of a step, for the identity of a saved run; `None` where no event is looked for.
+    /// The events and the samples per step, for the identity of a saved run; `None` if no event is looked for.
     pub(crate) fn events_identity(&self, samples: u32) -> Option<String> {
         let names: Vec<&str> = self.watched.iter().map(WatchedTrigger::text).collect();
         let ends = if self.ends == 0 { String::new() } else { format!(", the last {} end the run", self.ends) };
@@ -84,13 +84,13 @@ impl<'a> Account<'a> {
         (!names.is_empty()).then(|| names.join(", ") + &ends + &parts)
     }
 
-    /// What happened, in words and numbers; none where nothing was looked for.
+    /// The events found, in words and numbers; `None` if no event is looked for.
     pub(crate) fn happened(&self, crossings: &[SavedCrossing], close: Option<Close>) -> Option<Events> {
         let happened = crossings.iter().filter_map(|crossing| Happened::of(self.system, &self.watched, crossing));
         (!self.watched.is_empty()).then(|| Events::new(happened, close))
     }
 
-    /// Makes it at once, with an eye on the events in so many parts of each step.
+    /// Makes the run, and searches each step for events in `samples` parts.
     pub(crate) fn observed(&self, samples: u32, observer: &mut dyn Observer, progress: &mut dyn Progress) -> Made {
         let events = self.events();
         let made =
@@ -113,7 +113,7 @@ impl<'a> Account<'a> {
         object
     }
 
-    /// Where a run ends, a line for each number; those of a sleigh together.
+    /// The state at the end of a run, one line per number. A sleigh has its own table.
     pub(crate) fn end(&self, record: &Record) -> Vec<(String, String)> {
         if let Some(system) = self.system.sleigh() {
             return crate::table::end_of_sleigh(&system.sleigh_state(&record.q, &record.v));

@@ -10,7 +10,7 @@ fn main() {
     let mut sources = vec![PathBuf::from("Cargo.lock"), crates.join("cli")];
     let folders = fs::read_dir(crates).map(|found| found.flatten().map(|entry| entry.path()).collect());
     let folders: Vec<PathBuf> = folders.unwrap_or_default();
-    // Of Python only how it is called.
+    // The results depend on Python only by the way it is called.
     let numbers = folders.iter().filter(|folder| !folder.ends_with("cli") && !folder.ends_with("python"));
     sources.extend(numbers.map(|folder| folder.join("src")));
     sources.retain(|source| source.exists());

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ffi::OsString;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a program that calls a command has to do with it while it goes on: it may end the command, and see how far it has come.
+/// A program's handle on a command that it calls: it can end the command and read its progress.
 #[derive(Debug, Clone, Default)]
 pub struct Caller {
     stop: Stop,
@@ -13,7 +13,7 @@ pub struct Caller {
 }
 
 impl Caller {
-    /// Ends the command soon, as Ctrl-C does; what is done is kept.
+    /// Asks the command to end soon, as Ctrl-C does; finished work is kept.
     pub fn stop(&self) {
         self.stop.ask();
     }
@@ -24,17 +24,17 @@ impl Caller {
         self.stop.asked()
     }
 
-    /// What is asked when the command is to end.
+    /// The stop request that the command checks.
     pub(crate) fn wish(&self) -> &Stop {
         &self.stop
     }
 
-    /// Does some work of this thread, which the caller ends between two steps wherever it is.
+    /// Runs `work` on this thread; the caller can end it between two steps.
     pub fn attend<T>(&self, work: impl FnOnce() -> T) -> T {
         self.stop.within(work)
     }
 
-    /// What is being done, how much of it is done, and how much there is in all.
+    /// The present work, the amount done, and the total.
     #[must_use]
     pub fn progress(&self) -> Option<(String, u64, u64)> {
         let bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
@@ -64,7 +64,7 @@ pub struct ShownToCaller<'a> {
 }
 
 impl<'a> ShownToCaller<'a> {
-    /// A run under that name, of so many steps.
+    /// Shows a run of `steps` steps under the name `label`.
     #[must_use]
     pub fn new(caller: &'a Caller, label: &str, steps: u64) -> Self {
         Self { bar: caller.bar(label, steps), caller }
@@ -85,7 +85,7 @@ impl Progress for ShownToCaller<'_> {
     }
 }
 
-/// What a command that was called came to.
+/// The result of a command that a program called.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CommandOutput {
     /// The exit code: 0 done, 1 the computation failed, 2 the request was wrong, 130 ended by the caller.
@@ -119,27 +119,27 @@ pub fn call(arguments: impl IntoIterator<Item = OsString>, caller: &Caller) -> C
     CommandOutput { code, ..output }
 }
 
-/// Hands a text of standard output to the caller, where there is one.
+/// Hands a text of standard output to the caller; returns false if there is no caller.
 pub(crate) fn keep_out(text: &str) -> bool {
     with(|session| session.output.out.push_str(text)).is_some()
 }
 
-/// Hands a text of standard error to the caller, where there is one.
+/// Hands a text of standard error to the caller; returns false if there is no caller.
 pub(crate) fn keep_err(text: &str) -> bool {
     with(|session| session.output.err.push_str(text)).is_some()
 }
 
-/// Tells the caller, where there is one, whether another process writes the output.
+/// Tells the caller, if there is one, whether another process writes the output.
 pub(crate) fn note_busy(busy: bool) {
     with(|session| session.output.busy = busy);
 }
 
-/// Who ends this command, where that is not Ctrl-C.
+/// The program that called this command, if one did.
 pub(crate) fn caller() -> Option<Caller> {
     with(|session| session.caller.clone())
 }
 
-/// Shows a bar to the caller, where there is one.
+/// Shows a bar to the caller, if there is one.
 pub(crate) fn watch(bar: &ProgressBar) {
     with(|session| session.caller.watch(bar));
 }

@@ -16,7 +16,7 @@ pub(crate) enum ChartFile<'a> {
 }
 
 impl<'a> ChartFile<'a> {
-    /// Refused, before the work begins, where it could not be written at its end.
+    /// Chooses the format by the ending of `path`. Fails, before the work begins, if the file could not be written.
     pub(crate) fn of(path: &'a Path, scene: &str, overwrite: bool) -> Result<Self, CliError> {
         FileRoles::of(scene).rows("--out", Some(path)).check()?;
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());

@@ -1,4 +1,4 @@
-//! `noslip check`: what scenes are, or what is wrong with them.
+//! `noslip check`: describes valid scenes and reports the errors of invalid ones.
 
 use crate::args::CheckArguments;
 use crate::error::CliError;
@@ -8,7 +8,7 @@ use crate::{table, terminal};
 use scene::AnyScene;
 use serde_json::{Map, Value, json};
 
-/// All of them: one that is not valid does not hide the others.
+/// Checks every scene: an invalid one does not hide the next.
 pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
     let names = method_names();
     let (mut objects, mut failed) = (Vec::new(), Vec::new());
@@ -47,7 +47,7 @@ fn valid(scene: &AnyScene, facts: &[(String, String)]) -> Value {
         AnyScene::Sleigh(scene) => scene.effects.iter().map(scene::SceneEffect::kind).collect(),
         AnyScene::Text(_) => Vec::new(),
     };
-    // Of effects there may be several, which `effects` lists.
+    // There may be several effects, which `effects` lists.
     let facts: Map<String, Value> =
         facts.iter().filter(|(name, _)| name != "effect").map(|(name, value)| (name.clone(), json!(value))).collect();
     json!({"scene": scene.name(), "valid": true, "title": scene.title(), "method": run.method, "step": run.actual_step(),

@@ -60,7 +60,7 @@ fn csv(path: &Path) -> Result<Columns, Error> {
     }
     for record in reader.records() {
         for (cell, (column, numbers)) in record?.iter().zip(&mut columns) {
-            // What is empty is not there.
+            // An empty cell is a missing number.
             let number = if cell.is_empty() { Ok(f64::NAN) } else { cell.parse() };
             *numbers &= number.is_ok();
             column.values.push(number.unwrap_or(f64::NAN));

@@ -6,7 +6,7 @@ use scene::RunSettings;
 pub(crate) struct CommandLine(Vec<String>);
 
 impl CommandLine {
-    /// `noslip COMMAND SCENE`, with the settings in place of those of the scene.
+    /// `noslip COMMAND SCENE`, with one `--set` for each setting.
     pub(crate) fn of(command: &str, scene: &str, set: &Settings) -> Self {
         let line = Self(["noslip", command, scene].map(str::to_owned).to_vec());
         set.set.iter().fold(line, |line, setting| line.with("--set", setting))
@@ -24,7 +24,7 @@ impl CommandLine {
         self.with(flag, format!("{value:?}"))
     }
 
-    /// A flag and its value, where there is one.
+    /// A flag and its value; nothing for `None`.
     pub(crate) fn maybe(self, flag: &str, value: Option<impl ToString>) -> Self {
         value.into_iter().fold(self, |line, value| line.with(flag, value))
     }
@@ -35,7 +35,7 @@ impl CommandLine {
         self
     }
 
-    /// The method, the step (s) and the duration that were taken; backward in time where the step is negative.
+    /// The method, the step (s) and the duration that were taken; backward in time if the step is negative.
     pub(crate) fn run(self, run: &RunSettings, step: f64) -> Self {
         let duration = run.duration.copysign(step);
         let line = self.with("--method", &run.method).number("--step", step.abs()).number("--duration", duration);

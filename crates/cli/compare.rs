@@ -59,7 +59,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     unless_interrupted(comparison.interrupted, resume, failed)
 }
 
-/// What comes of work that may have been interrupted; failures before are told all the same.
+/// The outcome of work that may have been interrupted; an earlier failure is printed.
 pub(crate) fn unless_interrupted(
     interrupted: Option<String>,
     resume: Option<PathBuf>,
@@ -95,7 +95,7 @@ struct Compare<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// What shows how far a part of a comparison has come, and lets Ctrl-C end it.
+/// A progress bar for a part of a comparison, which Ctrl-C can end.
 pub(crate) fn progress_of<'a>(scene: &str, label: &str, steps: u64, interrupt: &'a Interrupt) -> Interruptible<'a> {
     Interruptible { bar: progress::bar(&format!("{scene} {label}"), steps), interrupt }
 }
@@ -120,7 +120,7 @@ impl Compare<'_> {
         Ok(records)
     }
 
-    /// How far the runs have come, where Ctrl-C ended them or the reference of their ends.
+    /// Says how many methods finished, if Ctrl-C ended a run or the reference; else `None`.
     fn interrupted(&self, records: &[Record], referred: bool) -> Option<String> {
         let whole = records.iter().filter(|record| !record.interrupted).count();
         let part = records.iter().find(|record| record.interrupted);
@@ -163,7 +163,7 @@ impl Compare<'_> {
             });
             series.push(series_of(system, record));
         }
-        // The longest run: one that failed ends before the others.
+        // The longest run: a failed run ends before the rest.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
         let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
         let interrupted = self.interrupted(&records, referred);
@@ -188,7 +188,7 @@ impl Compare<'_> {
     }
 }
 
-/// The motion of a scene in closed form, where it has one.
+/// The closed-form motion of a scene; `None` if it has none.
 pub(crate) fn exact(scene: &AnyScene) -> Option<Exact> {
     match scene {
         AnyScene::Sleigh(scene) => scene.exact().ok().flatten(),
@@ -196,12 +196,12 @@ pub(crate) fn exact(scene: &AnyScene) -> Option<Exact> {
     }
 }
 
-/// The configuration of a sleigh in closed form: a rotor is not told of.
+/// The configuration of a sleigh at time `t` (s) in closed form, without rotor angles.
 pub(crate) fn place_at(exact: &Exact, t: f64) -> Vec<f64> {
     exact.at(t).to_coordinates().0.to_vec()
 }
 
-/// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
+/// Reference for the end of the motion: the closed form, or `gauss16` with a quarter of the step.
 enum ComparisonReference<'a> {
     Exact(&'a Exact),
     Computed {
@@ -209,7 +209,7 @@ enum ComparisonReference<'a> {
         end: Vec<f64>,
     },
     None,
-    /// A signal ended the work on it.
+    /// Ctrl-C ended the computation of the reference.
     Interrupted,
 }
 
@@ -251,7 +251,8 @@ impl<'a> ComparisonReference<'a> {
     }
 }
 
-/// What the pictures show: the path, where there are coordinates `x` and `y`, with the heading, where an angle has a name of one, and a rotor.
+/// The curves of a record: the path if there are coordinates `x` and `y`, the heading if an angle has one of the usual names, and the
+/// rotor.
 fn series_of(system: &Built<'_>, record: &Record) -> Series {
     // A run without a step has nothing to draw.
     let samples = if record.steps == 0 { &[][..] } else { &record.samples[..] };

@@ -5,7 +5,7 @@ use crate::provenance::{DescribedColumn, Provenance};
 use report::{Numbers, file_stem};
 use serde_json::{Value, json};
 
-/// A column of the CSV file, where the JSON row has its field, and the type of the field.
+/// A column of the CSV file: its heading, the JSON pointer to its field, and the data type.
 type Told = (&'static str, &'static str, &'static str);
 
 /// The columns of a run.
@@ -32,13 +32,13 @@ const COLUMNS: [Told; 21] = [
     ("wall [s]", "/wall_seconds", "double"),
     ("cost [s/s]", "/seconds_per_simulated_second", "double"),
 ];
-/// Of a method that failed: the step, the time (s) that the run is valid up to, and why.
+/// Columns of a method that failed: step, time (s) up to which the run is valid, and reason.
 const FAILURE: [Told; 3] = [
     ("failed at step", "/failure/step", "integer"),
     ("failed at t [s]", "/failure/time", "double"),
     ("failure", "/failure/reason", "string"),
 ];
-/// The columns that a method that failed has besides: the others would be those of a part of the run.
+/// Number of leading columns that a failed method also fills. Its later columns stay empty, as they would describe a partial run.
 const KEPT: usize = 3;
 
 /// The object that `compare --json` prints.

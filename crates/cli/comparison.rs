@@ -14,7 +14,7 @@ pub(crate) const REFERRED: u64 = 1 << 22;
 pub(crate) struct Comparison {
     pub(crate) rows: Vec<ComparisonRow>,
     pub(crate) report: SceneReport,
-    /// How far it came, where Ctrl-C ended it.
+    /// How far it came, if Ctrl-C ended it.
     pub(crate) interrupted: Option<String>,
 }
 
@@ -32,6 +32,6 @@ pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec
     others.iter().filter_map(|(name, other)| Some((*name, drift.better_from(other)?))).collect()
 }
 
-/// What is told where a signal came after all methods.
+/// The message if a signal came after all methods.
 pub(crate) const WITHOUT_REFERENCE: &str =
     "all methods finished, the reference of their ends did not: there are no end errors";

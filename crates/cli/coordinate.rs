@@ -12,10 +12,10 @@ pub(crate) struct Coordinate {
 }
 
 impl Coordinate {
-    /// The quantity that a system has by that name.
+    /// The quantity of a system with the name `name`.
     ///
     /// # Errors
-    /// What is wrong, with the names that there are.
+    /// The message about a wrong name, with the names that there are.
     pub(crate) fn of(system: &Built<'_>, name: &str) -> Result<Self, String> {
         let mut quantities = system.quantities();
         match system.named(name.trim()) {
@@ -29,7 +29,7 @@ impl Coordinate {
         system.value(self.k, t, q, v)
     }
 
-    /// The same, an angle within half a turn of zero.
+    /// The value, with an angle within half a turn of zero.
     pub(crate) fn shown(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let value = self.value(system, t, q, v);
         if self.quantity.angle { within_a_turn(value) } else { value }
@@ -55,7 +55,7 @@ pub(crate) fn name_and_value(text: &str, accepted: &str) -> Result<(String, f64)
     Ok((name.trim().to_owned(), value))
 }
 
-/// A range of starts: a quantity by its name, from where to where, in how many cells.
+/// A range of starts: a quantity by its name, the two ends, and the number of cells.
 #[derive(Debug, Clone)]
 pub(crate) struct Range {
     pub(crate) name: String,
@@ -73,7 +73,7 @@ impl Range {
     /// The quantity by which starts of a system are given.
     ///
     /// # Errors
-    /// What is wrong, with the names that are accepted.
+    /// The message about a wrong name, with the names that are accepted.
     pub(crate) fn on(&self, system: &Built<'_>) -> Result<usize, String> {
         let starts = system.quantities().into_iter().enumerate().filter(|(k, _)| system.gives_start(*k));
         let accepted = || format!("{RANGE}; NAME is one of {}", names(starts.map(|(_, quantity)| quantity).collect()));

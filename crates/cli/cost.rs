@@ -19,8 +19,8 @@ struct CostRow {
 /// A part of a scene: the effects of a sleigh, or the forces of a system of text, that are in it.
 type Part = (Vec<&'static str>, AnyScene);
 
-/// `noslip cost`: what each effect of a scene costs a step, for the scene with none, with each alone, and with all; of a system of text what
-/// its forces cost.
+/// `noslip cost`: the cost of a step without effects, with each effect alone, and with all; for a system of text, without and with its
+/// forces.
 pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     let scene = inspect::load_any(arguments, None)?;
     notes::moves(&scene);
@@ -86,7 +86,7 @@ fn with_effects(scene: &Scene) -> Vec<Part> {
     subsets.into_iter().map(part).collect()
 }
 
-/// The system without its forces and, where it has any, with them.
+/// The system without its forces, and with them if it has any.
 fn with_forces(scene: &TextScene) -> Result<Vec<Part>, CliError> {
     let bare = scene.without_forces().map_err(|error| CliError::Request(error.to_string()))?;
     let mut parts = vec![(Vec::new(), AnyScene::Text(Box::new(bare)))];

@@ -5,7 +5,7 @@ pub(crate) fn header(headings: impl IntoIterator<Item = String>) -> String {
     headings.into_iter().map(|heading| quoted(&heading)).collect::<Vec<_>>().join(",")
 }
 
-/// A field of text, in quotes where it would be taken for more than one field, or for a formula by a program of tables.
+/// A text field. It is quoted if it contains a separator, a quote or a line break, or if a spreadsheet would read it as a formula.
 pub(crate) fn quoted(text: &str) -> String {
     let formula = text.starts_with(['=', '+', '-', '@']) && text.parse::<f64>().is_err();
     if formula || text.contains([',', '"', '\n', '\r']) {

@@ -7,7 +7,7 @@ use crate::{table, terminal};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The largest difference in a column, and where.
+/// The largest difference in a column, and its row.
 struct Difference {
     name: String,
     size: f64,
@@ -63,7 +63,7 @@ fn alone<'a>(one: &'a Columns, other: &'a Columns) -> impl Iterator<Item = &'a s
     one.iter().map(|column| column.name.as_str()).filter(|name| !other.iter().any(|other| other.name == *name))
 }
 
-/// Two that are no numbers are no difference; one that is none differs from every number.
+/// The largest difference of two columns. Two NaNs do not differ; a NaN and a number differ by infinity.
 fn largest(name: &str, values: &[f64], others: &[f64]) -> Difference {
     let mut found = Difference { name: name.to_owned(), size: 0.0, row: 0, values: [f64::NAN; 2] };
     for (row, (a, b)) in values.iter().zip(others).enumerate() {
@@ -118,7 +118,7 @@ fn text(files: &[String; 2], [a, b]: [&Columns; 2], differences: &[Difference]) 
 fn object(files: &[String; 2], [a, b]: [&Columns; 2], differences: &[Difference]) -> Value {
     let one = |difference: &Difference| {
         let Difference { name, size, row, values: [a, b] } = difference;
-        // JSON has no word for what is not finite.
+        // JSON has no number that is not finite: an infinite difference becomes null.
         json!({"name": name, "difference": size, "row": row, "a": a, "b": b, "same": *size == 0.0})
     };
     let columns: Vec<Value> = differences.iter().map(one).collect();

@@ -34,7 +34,7 @@ fn keys(kind: &str) -> Vec<Key> {
     names.iter().map(key).collect()
 }
 
-/// What the value of a key may be, in words.
+/// The accepted values of a key, in words.
 fn type_of(property: &Value) -> String {
     let number = |limits: &Value| match (limits["exclusiveMinimum"].as_f64(), limits["minimum"].as_f64()) {
         (Some(least), _) => format!("number > {least}"),

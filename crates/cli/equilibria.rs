@@ -11,11 +11,11 @@ use report::{Chart, Layer, chart_svg};
 use scene::{AnyScene, Built, SceneSystem};
 use sleigh::Sleigh;
 
-/// The speeds at which orbits of the phase portrait begin, relative to that of the scene's energy, and their turn rates,
-/// relative to its turn rate.
+/// Starts of the phase portrait's orbits: speeds as fractions of the speed that has the scene's energy, and the turn rate as a fraction of
+/// that speed (rad/m), both scaled alike.
 const PORTRAIT: ([f64; 3], f64) = ([0.4, 0.7, 1.0], 0.03);
 
-/// What was found, and the orbits of a picture of it.
+/// The motions found, and the orbits of a picture of them.
 struct FoundMotions {
     rows: Vec<MotionRow>,
     searched: Searched,
@@ -105,7 +105,8 @@ impl Find<'_> {
     }
 }
 
-/// Orbits from both sides of slow turns, at some speeds forward and back, of the energy of that speed and turn rate.
+/// Orbits that begin with slow turns to both sides, forward and backward, at fractions of the speed that has the energy of `speed` and
+/// `turn_rate`.
 fn orbits(
     (system, blade): (&Built<'_>, &dyn SceneSystem),
     sleigh: &Sleigh,

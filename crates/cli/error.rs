@@ -38,7 +38,7 @@ pub(crate) enum CliError {
     WithoutParquet { path: PathBuf },
     #[error("{}: accepted are numbers (.csv) and a picture (.svg), by the ending of the name", path.display())]
     ChartEnding { path: PathBuf },
-    /// What is asked for makes no sense, or cannot be had of this scene or method.
+    /// The request makes no sense, or does not fit this scene or method.
     #[error("{0}")]
     Request(String),
     /// More than fits into memory.
@@ -107,7 +107,7 @@ impl CliError {
             Self::Busy { .. } | Self::Read { .. } | Self::Checkpoint { .. } => 2,
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
             Self::Points { .. } => 2,
-            // That a search ends without any is no fault of the request.
+            // A search without a result is no fault of the request.
             Self::Equilibria(
                 EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_) | EquilibriumError::NotFinite,
             ) => 1,

@@ -1,4 +1,4 @@
-//! What the exponents of one motion and the largest exponent of many have in common.
+//! Common parts of the exponents of one motion and the largest exponents of many.
 
 use crate::args::LyapunovArguments;
 use crate::command_line::CommandLine;
@@ -10,10 +10,10 @@ use harness::analysis::LyapunovError;
 use scene::{AnyScene, Built, BuiltScene, StartPlace};
 use serde_json::json;
 
-/// The part of it before the run that is not counted, where nobody says.
+/// Default time before the run that is not counted, as a fraction of the run.
 const SETTLE: f64 = 0.1;
 
-/// What is said of a scene without a motion of its own.
+/// The error for a scene without a motion of its own.
 fn imposed() -> CliError {
     CliError::Request(
         "the scene imposes velocities (servo, tracer): accepted are scenes that only the blade constrains".to_owned(),
@@ -36,7 +36,7 @@ pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &AnyScene) -> (Sche
     (schedule, settle.ceil() as u64)
 }
 
-/// What made exponents, and where a signal ended the work.
+/// The provenance of exponents, with the interruption if a signal ended the work.
 pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interrupted: Option<&str>) -> Provenance {
     let LyapunovArguments { scene: shared, exponents, settle, energy, map, out, .. } = arguments;
     let (run, step) = (scene.run(), scene.schedule().step);

@@ -15,7 +15,7 @@ pub(crate) struct FileRoles {
 }
 
 impl FileRoles {
-    /// Those of a command on the scene, or the sweep, of that name: with all files that this one names.
+    /// The files of a command on the scene or sweep `name`, with all files that it names.
     pub(crate) fn of(name: &str) -> Self {
         Self { read: scene::files_of(name).iter().map(|path| place(path)).collect(), written: Vec::new() }
     }
@@ -46,7 +46,7 @@ impl FileRoles {
         self
     }
 
-    /// Refuses a file that is read and written, or written twice, also where files may be overwritten.
+    /// Refuses a file that is read and written, or written twice, even if files may be overwritten.
     pub(crate) fn check(&self) -> Result<(), CliError> {
         for (number, (flag, file)) in self.written.iter().enumerate() {
             if self.read.contains(file) {

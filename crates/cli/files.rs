@@ -20,7 +20,7 @@ pub(crate) fn check_file(path: &Path, overwrite: bool) -> Result<(), CliError> {
     temporary(path).map(drop)
 }
 
-/// The same for a folder.
+/// Refuses, before the work begins, a folder that could not be written into.
 pub(crate) fn check_folder(path: &Path, overwrite: bool) -> Result<(), CliError> {
     refuse_existing(path, overwrite)?;
     if path.exists() && !path.is_dir() {
@@ -29,13 +29,13 @@ pub(crate) fn check_folder(path: &Path, overwrite: bool) -> Result<(), CliError>
     temporary(path).map(drop)
 }
 
-/// A folder that a command will write into, made before the work: of two that begin at once only one has it. It is removed where nothing
-/// comes into it.
+/// A folder that a command writes into, made before the work: of two commands that begin at once, only one gets it. An empty folder is
+/// removed on drop.
 #[derive(Debug)]
 pub(crate) struct ClaimedFolder(PathBuf);
 
 impl ClaimedFolder {
-    /// That folder.
+    /// Claims the folder `path`.
     pub(crate) fn new(path: &Path, overwrite: bool) -> Result<Self, CliError> {
         check_folder(path, overwrite)?;
         match std::fs::create_dir(path) {
@@ -49,7 +49,7 @@ impl ClaimedFolder {
         }
     }
 
-    /// The first of `NAME`, `NAME-2`, .. that is not there.
+    /// Claims the first of `NAME`, `NAME-2`, .. that does not exist.
     pub(crate) fn first_free(name: &str) -> Result<Self, CliError> {
         let numbered = |k: u32| if k == 1 { name.to_owned() } else { format!("{name}-{k}") };
         for path in (1..).map(numbered).map(PathBuf::from) {
@@ -61,7 +61,7 @@ impl ClaimedFolder {
         Err(CliError::Exists { path: PathBuf::from(name) })
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.0
     }
@@ -69,7 +69,7 @@ impl ClaimedFolder {
 
 impl Drop for ClaimedFolder {
     fn drop(&mut self) {
-        // One with a file in it stays.
+        // A folder with a file in it stays.
         let _ = std::fs::remove_dir(&self.0);
     }
 }
@@ -97,7 +97,7 @@ pub(crate) fn write_whole(
     named(new, &file, path, overwrite).map_err(|error| CliError::Write { path: path.to_owned(), source: error.error })
 }
 
-/// Gives a file its name, in place of the file of that name where that may be overwritten, whose rights it then takes.
+/// Renames a file to `path`. If it may overwrite an existing file, it takes over that file's permissions.
 pub(crate) fn named(new: TempPath, file: &File, path: &Path, overwrite: bool) -> Result<(), PathPersistError> {
     let target = target(path, overwrite);
     if !overwrite {
@@ -107,7 +107,7 @@ pub(crate) fn named(new: TempPath, file: &File, path: &Path, overwrite: bool) ->
     new.persist(target)
 }
 
-/// Whether the file that is there has these very bytes: whoever wrote it was ended before the rest was done. Another one is refused.
+/// Checks that an existing file has exactly this content, left by a command that was ended before its later work. Other content is refused.
 pub(crate) fn as_written(
     path: &Path,
     content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Error>,
@@ -136,12 +136,12 @@ fn filled(
     Ok(file)
 }
 
-/// What is overwritten through a link is the file that the link leads to.
+/// The file to write: if a link may be overwritten, the file that the link leads to.
 fn target(path: &Path, overwrite: bool) -> PathBuf {
     if overwrite { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() }
 }
 
-/// Gives a new file the rights of the one that it replaces, where that may be done.
+/// Gives a new file the permissions of the file that it replaces, if possible.
 fn keep_mode(old: &Path, new: &File) {
     if let Ok(old) = old.metadata() {
         let _ = new.set_permissions(old.permissions());
@@ -192,13 +192,13 @@ pub(crate) fn new_of(path: &Path) -> PathBuf {
     parent(path).join(name)
 }
 
-/// Where a path leads, so that two paths of one file are the same; of a file that is not there, where it would be.
+/// The canonical path of a file, equal for all paths of one file; if the file does not exist, its future path.
 pub(crate) fn place(path: &Path) -> PathBuf {
     let beside = || Some(parent(path).canonicalize().ok()?.join(path.file_name()?));
     path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
 }
 
-/// The text of a file of so many bytes at most: a device might never end.
+/// Reads the text of a file of at most `most` bytes: a device might never end.
 pub(crate) fn read_text(path: &Path, most: u64) -> Result<String, Error> {
     let mut text = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut text)?;

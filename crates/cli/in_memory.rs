@@ -15,13 +15,13 @@ pub struct RunRequest {
     pub every: u64,
     /// Times (s) at which the motion is sampled, in order; with any, they are kept in place of the nodes.
     pub times: Vec<f64>,
-    /// The step is the longest whose error stays below this (m or rad).
+    /// Error bound of a step (m or rad): the run takes the longest step below it.
     pub tolerance: Option<f64>,
     /// Whether steps that are refused are divided.
     pub substep: bool,
-    /// What is reported, as `speed=0`.
+    /// The events to report, as `speed=0`.
     pub events: Vec<String>,
-    /// What ends the run.
+    /// The events that end the run.
     pub until: Vec<String>,
     /// Whether it goes backward in time.
     pub backward: bool,
@@ -43,7 +43,7 @@ pub struct RunResult {
     pub numbers: Vec<Vec<f64>>,
     /// The object of `noslip run --json`.
     pub object: Value,
-    /// Why the run failed, with step and time, where it did.
+    /// Why the run failed, with step and time; `None` if it did not fail.
     pub failure: Option<String>,
     /// Whether the caller ended the run.
     pub interrupted: bool,
@@ -52,11 +52,11 @@ pub struct RunResult {
 /// Why no run was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// What is wrong.
+    /// The message.
     pub message: String,
-    /// Whether the request is: else the computation failed.
+    /// True if the request is wrong; false if the computation failed.
     pub request: bool,
-    /// Whether it asks for more than fits into memory.
+    /// True if the request needs more memory than is available.
     pub memory: bool,
 }
 
@@ -67,7 +67,7 @@ impl From<CliError> for Refusal {
     }
 }
 
-/// Refuses times of samples that no run of that duration (s) passes in their order.
+/// Refuses sample times (s) that decrease or lie outside the run of `duration` (s).
 ///
 /// # Errors
 /// [`Refusal`].
@@ -82,7 +82,7 @@ pub fn check_times(times: &[f64], duration: f64) -> Result<(), Refusal> {
 /// Makes the run of a scene, with its method, step and duration.
 ///
 /// # Errors
-/// [`Refusal`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
+/// [`Refusal`] if the request does not fit the scene, or no step meets the tolerance. A run that fails is a result.
 pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, Refusal> {
     check_times(&request.times, scene.run().duration)?;
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
@@ -91,11 +91,11 @@ pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<Ru
     Ok(InMemory { scene, request, method: &method, caller }.on(&built.system(), (&built.q, &built.v))?)
 }
 
-/// So many numbers of runs are kept in memory at most.
+/// Maximum count of numbers that runs keep in memory.
 pub(crate) const MOST_NUMBERS: u64 = 100_000_000;
 
 impl RunRequest {
-    /// Refuses, before the run, more numbers than fit: those of so many steps, with so many columns each.
+    /// Refuses, before the run, more than [`MOST_NUMBERS`] numbers for `steps` steps of `columns` columns.
     pub(crate) fn fits(&self, steps: u64, columns: usize) -> Result<(), CliError> {
         let kept = if self.times.is_empty() { steps / self.every.max(1) + 2 } else { self.times.len() as u64 };
         let columns = (columns as u64).max(1);
@@ -117,7 +117,7 @@ struct InMemory<'a> {
     caller: &'a Caller,
 }
 
-/// The events that are looked for, as they are written.
+/// Parses the events that are looked for.
 fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
 }
@@ -146,7 +146,7 @@ impl InMemory<'_> {
         } else {
             let mut samples = Samples::new(method, times);
             let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
-            // The motion at the times asked for, up to where the run comes; the work is not known there.
+            // The motion at the times asked for, as far as the run comes; the work is not known there.
             let node = |(t, state): (&f64, &AnyState)| {
                 let piece = mechanism.smooth_piece(*t);
                 Node::of(&View { system: &*piece, k: 0, t: *t, state }, f64::NAN, None)

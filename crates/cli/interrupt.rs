@@ -5,22 +5,22 @@ use dla::Stop;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Signals no further apart are one.
+/// Signals within this time count as one.
 const TOGETHER: Duration = Duration::from_secs(1);
 
-/// Whether the work is to end soon and to keep what is done: after Ctrl-C (SIGINT), SIGTERM or SIGHUP. A program that has called the command has
-/// the signals of its process to itself, and asks in their place.
+/// Whether the work is to end soon and keep its results: after Ctrl-C (SIGINT), SIGTERM or SIGHUP. If a program called the command, the
+/// program handles the signals of its process and requests the end itself.
 #[derive(Debug, Clone)]
 pub(crate) struct Interrupt(Stop);
 
 impl Interrupt {
-    /// Looks out for signals from now on. Who sends a second one after a while does not want to wait: it ends the process. Signals that come
-    /// together are one: a terminal, a shell and a wrapper may each send the same.
+    /// Listens for signals from now on. A second signal after a while ends the process at once. Signals that come together count as one: a
+    /// terminal, a shell and a wrapper may each send the same.
     pub(crate) fn listen() -> Self {
         Self::listen_saying("")
     }
 
-    /// The same; the first signal is answered with that note.
+    /// As [`Self::listen`], and prints `note` at the first signal.
     pub(crate) fn listen_saying(note: &'static str) -> Self {
         if let Some(caller) = called::caller() {
             return Self(caller.wish().clone());
@@ -49,13 +49,13 @@ impl Interrupt {
         self.0.asked()
     }
 
-    /// Does some work of this thread, which ends between two steps wherever it is.
+    /// Runs `work` on this thread; a request to end stops it between two steps.
     pub(crate) fn attend<T>(&self, work: impl FnOnce() -> T) -> T {
         self.0.within(work)
     }
 }
 
-/// Calls `act` at every signal, in a thread of its own. Where there are no signals to be had, nobody can send one.
+/// Calls `act` at every signal, in a thread of its own. A system without signals sends none.
 #[cfg(unix)]
 fn handle(act: impl Fn() + Send + 'static) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -74,7 +74,7 @@ fn is_ignored(signal: i32) -> bool {
     mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// The same for Ctrl-C alone.
+/// Calls `act` at Ctrl-C.
 #[cfg(not(unix))]
 fn handle(act: impl Fn() + Send + 'static) {
     let _ = ctrlc::set_handler(act);

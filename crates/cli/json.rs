@@ -42,7 +42,7 @@ pub(crate) fn record_of(scene: &str, record: &Record, end: &Value) -> Value {
     object
 }
 
-/// What failed, at which step, when and why.
+/// The failed step, its time and the reason.
 pub(crate) fn failure(failure: &RunError) -> Value {
     json!({
         "step": failure.step,

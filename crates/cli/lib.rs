@@ -91,7 +91,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(obey(std::env::args_os()))
 }
 
-/// The long flags of a command; none of one that there is not.
+/// The long flags of a command; empty for an unknown command.
 #[must_use]
 pub fn flags(command: &str) -> Vec<String> {
     let program = Arguments::command();
@@ -102,7 +102,7 @@ pub fn flags(command: &str) -> Vec<String> {
 /// Does what the arguments say, the first of which is the name of the program, and gives the exit code.
 fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
     if std::env::var_os("RAYON_NUM_THREADS").is_some() {
-        // What a library would make of it may be thousands.
+        // A thread pool made by a library may have thousands of threads.
         harness::analysis::prepare_threads();
     }
     let (outcome, done) = match Arguments::try_parse_from(arguments) {

@@ -2,21 +2,21 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 
-/// A file that no other process has, as long as it is open.
+/// A file that is locked against other processes while it is open.
 #[derive(Debug)]
 pub(crate) enum Lock {
-    /// The file, with what was in it, or empty; and whether it is new.
+    /// The file with its content, and true if the file is new and empty.
     Held(File, bool),
-    /// The same on a file system that has no locks.
+    /// As `Held`, on a file system without locks.
     Unlocked(File, bool),
-    /// Another process has it.
+    /// Another process has the file.
     Busy,
 }
 
 /// Opens a file for reading and writing, or makes it, and locks it. A link is not followed: in a folder of many people it may lead anywhere.
 ///
 /// # Errors
-/// Those of the operating system, and one where the path leads to a link or to what is no regular file.
+/// Fails if the operating system does, or if the path leads to a link or to anything but a regular file.
 pub(crate) fn locked(path: &Path) -> Result<Lock, Error> {
     loop {
         let (file, new) = match OpenOptions::new().read(true).write(true).create_new(true).open(path) {
@@ -29,7 +29,7 @@ pub(crate) fn locked(path: &Path) -> Result<Lock, Error> {
             Err(error) => return Err(error),
         };
         match file.try_lock() {
-            // A process that was done may have removed the file between the two calls: the lock is then that of a file without a name.
+            // Another process may have removed the file between the two calls: the lock then belongs to a file without a name.
             Ok(()) if !is_at(&file, path) => {}
             Ok(()) => return Ok(Lock::Held(file, new)),
             Err(TryLockError::WouldBlock) => return Ok(Lock::Busy),
@@ -41,7 +41,7 @@ pub(crate) fn locked(path: &Path) -> Result<Lock, Error> {
     }
 }
 
-/// A new file, locked, in place of what was there, unless another process has that. What was there is removed and not emptied: a link may
+/// Makes a new locked file in place of the old one, unless another process has that. The old file is removed and not emptied: a link may
 /// have led to it.
 ///
 /// # Errors

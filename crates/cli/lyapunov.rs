@@ -13,7 +13,7 @@ use report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, MAX_STEPS};
 use serde_json::{Value, json};
 
-/// What is measured where nobody says (s): of one motion, and of each of a map.
+/// Default durations (s): of one motion, and of each motion of a map.
 const DURATION: f64 = 10_000.0;
 const MAP_DURATION: f64 = 500.0;
 

@@ -1,8 +1,8 @@
-//! What `noslip precision` measures.
+//! The results of `noslip precision`.
 
 use harness::precision::{Clock, Curve};
 
-/// What was measured of a scene.
+/// The measurements of a scene.
 pub(crate) struct Measurement {
     /// How long the motion takes (s).
     pub(crate) duration: f64,
@@ -12,9 +12,9 @@ pub(crate) struct Measurement {
     pub(crate) curves: Vec<Curve>,
 }
 
-/// Where the motion truly ends.
+/// The reference for the end of the motion.
 pub(crate) struct KnownEnd<End> {
-    /// In closed form; else by the method.
+    /// True if the end is known in closed form; false if the method computed it.
     pub(crate) closed: bool,
     /// The method that computes it, or that the closed form is checked against.
     pub(crate) by: &'static str,
@@ -26,7 +26,7 @@ pub(crate) struct KnownEnd<End> {
 }
 
 impl<End> KnownEnd<End> {
-    /// How well it is known, without where it is.
+    /// How well the end is known, without the end itself.
     pub(crate) fn told(&self) -> KnownEnd<()> {
         let &Self { closed, by, steps, error, .. } = self;
         KnownEnd { closed, by, steps, error, end: () }

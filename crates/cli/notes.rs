@@ -18,7 +18,7 @@ pub(crate) fn moves(scene: &AnyScene) {
         let note = format!(
             "the constraints do not admit {} = {from} at the start; the run starts with {to}{}",
             moved.name,
-            // What is left out moves before what is given.
+            // Numbers that `start` omits are moved before numbers that it gives.
             if first { ": leave out of `start` what is to follow from the rest" } else { "" }
         );
         terminal::say("note", &note);

@@ -16,14 +16,14 @@ use std::path::Path;
 /// Where the rows of a run are to be written.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OutputRequest<'a> {
-    /// The file; none for standard output.
+    /// The file; `None` for standard output.
     pub(crate) path: Option<&'a Path>,
     format: Format,
     force: bool,
 }
 
 impl<'a> OutputRequest<'a> {
-    /// Refused, before the work begins, where the rows could not be written at its end; a run that is resumed may find its own file.
+    /// Checks, before the work begins, that the rows can be written at the end. A resumed run may find its own file.
     pub(crate) fn new(path: &'a Path, format: Option<Format>, force: bool, resumed: bool) -> Result<Self, CliError> {
         if path == Path::new("-") {
             let format = format.unwrap_or(Format::Csv);
@@ -42,11 +42,11 @@ impl<'a> OutputRequest<'a> {
     }
 }
 
-/// How far an output has come, as a checkpoint tells it: the bytes, their checksum, and every how many nodes are in it.
+/// How far an output has come, as in a checkpoint: bytes, checksum, and stride of the nodes.
 pub(crate) type Position = [u64; 3];
 
-/// Rows of numbers on their way to a file, or to standard output. Lines of text are written as they come, those of a file to `OUT.part`,
-/// which gets its name at the end; of the other formats that file holds the numbers, and the output is made of it at the end.
+/// Rows of numbers on their way to a file or to standard output. Rows of text are written as they come; a file is written as `OUT.part`,
+/// which gets its name at the end. For the binary formats `OUT.part` holds the numbers, and the output is made from it at the end.
 pub(crate) struct Output<'a> {
     asked: OutputRequest<'a>,
     provenance: Provenance,
@@ -57,15 +57,15 @@ pub(crate) struct Output<'a> {
     line: Vec<u8>,
     bytes: u64,
     checksum: Hasher,
-    /// The position before the last row, where that is there only since the run ends with it.
+    /// The position before the last row, if that row is off the stride and written only because the run ends.
     before_last: Option<Position>,
     failed: Option<Error>,
-    /// The file of before may be replaced: it is that of this run.
+    /// True if the existing output belongs to this run and may be replaced.
     own: bool,
 }
 
 impl<'a> Output<'a> {
-    /// Begins, or goes on from where a checkpoint says, which tells a run that has begun, or the start of one.
+    /// Begins an output, or continues from a position; the flag beside it is false if the checkpoint is at the start of the run.
     pub(crate) fn open(
         asked: OutputRequest<'a>,
         provenance: Provenance,
@@ -133,8 +133,8 @@ impl<'a> Output<'a> {
         Ok(output)
     }
 
-    /// Takes over the rows up to a position, from `OUT.part` or from the output of a run that was ended; false where there is neither. Of a
-    /// run that has not begun, they only show whose the output is.
+    /// Takes over the rows up to a position, from `OUT.part` or from the output of an ended run. Returns false if neither has them. If the
+    /// run has not begun, the rows only show whether the output is its own.
     fn goes_on(&mut self, path: &Path, [bytes, checksum, every]: Position, begun: bool) -> Result<bool, CliError> {
         let Some(part) = &self.part else { return Ok(false) };
         let unreadable = |source| CliError::Read { path: part.path().to_owned(), source };
@@ -190,7 +190,7 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Whether the finished output of before begins with these rows.
+    /// Whether the finished output of an earlier run begins with these rows.
     fn has_rows(
         &self,
         path: &Path,
@@ -228,14 +228,14 @@ impl<'a> Output<'a> {
         copied().map_err(|source| part.failed(source))
     }
 
-    /// How many rows so many bytes of numbers are.
+    /// The number of rows in `bytes` bytes of numbers.
     fn rows_in(&self, bytes: u64) -> Option<u64> {
         bytes.checked_div(8 * self.columns.len() as u64)
     }
 
     /// Adds the row of node `k`. An error is kept until the end: the run goes on.
     pub(crate) fn row(&mut self, k: u64, row: &[f64]) {
-        // A node that is not due is the last one of a run that was ended; the run that goes on does not have it.
+        // A node off the stride is the last one of an ended run; the resumed run does not have it.
         self.before_last = (!k.is_multiple_of(self.every)).then(|| self.here());
         self.line.clear();
         match self.asked.format {
@@ -271,12 +271,12 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Whether nobody reads any more.
+    /// Whether the reader has closed the output.
     pub(crate) fn is_closed(&self) -> bool {
         self.failed.as_ref().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
     }
 
-    /// How far it has come, without a last row that is not due; all of that is then on the disk.
+    /// Flushes and syncs the rows written, and returns their byte count, checksum and stride. A final row off the stride is excluded.
     pub(crate) fn position(&mut self) -> Option<Position> {
         if self.failed.is_some() {
             return None;
@@ -291,8 +291,8 @@ impl<'a> Output<'a> {
         [self.bytes, u64::from(self.checksum.clone().finalize()), self.every]
     }
 
-    /// Ends the output: a file appears whole, or not at all. A run with a checkpoint keeps what resuming it needs; of another, whose file
-    /// cannot be written, nothing is left.
+    /// Ends the output: a file appears whole, or not at all. A run with a checkpoint keeps what resuming needs. Without one, nothing is
+    /// left if the file cannot be written.
     pub(crate) fn finish(self, checkpoint: bool, interrupted: bool) -> Result<(), CliError> {
         let beside = self.part.as_ref().map(|part| part.path().to_owned());
         let outcome = self.written(checkpoint, interrupted);
@@ -318,7 +318,7 @@ impl<'a> Output<'a> {
         let provenance = self.provenance.interrupted(interrupted.then_some("a signal ended the run"));
         if self.asked.format.is_text() {
             part.file().sync_all().map_err(|source| part.failed(source))?;
-            // What says whose rows they are comes first: then no rows are without it.
+            // The metadata comes first, so that rows never lack it.
             check_file(path, overwrite)?;
             provenance.write_beside(path, &self.columns)?;
             return part.becomes(path, overwrite).inspect_err(|_| {
@@ -344,7 +344,7 @@ impl<'a> Output<'a> {
     }
 }
 
-/// The checksum of what is written.
+/// Sums the bytes written into a checksum.
 struct SummedColumn(Hasher);
 
 impl Write for SummedColumn {
@@ -358,7 +358,7 @@ impl Write for SummedColumn {
     }
 }
 
-/// The checksum of the first bytes of a file, which are copied; none where there are not so many.
+/// Copies the first `bytes` bytes of a file and returns their checksum; `None` if the file is shorter.
 fn summed(mut file: &File, bytes: u64, copy: &mut impl Write) -> Result<Option<Hasher>, Error> {
     file.seek(SeekFrom::Start(0))?;
     let (mut sum, mut left, mut block) = (Hasher::new(), bytes, vec![0; 1 << 16]);
@@ -386,7 +386,7 @@ fn numbers(mut file: &File, width: usize) -> Result<impl Iterator<Item = Result<
     }))
 }
 
-/// The columns as those of an archive of arrays.
+/// The columns as entries of an archive of arrays.
 pub(crate) fn in_arrays(columns: &[Column]) -> Vec<ArrayColumn<'_>> {
     columns.iter().map(|column| ArrayColumn { name: &column.name, whole: column.whole }).collect()
 }

@@ -14,7 +14,7 @@ use std::io::{Error, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The rows of a group, fewer where these would be more than so many numbers.
+/// Maximum number of rows in a group; a group also holds at most [`HELD`] numbers.
 const GROUP: usize = 1 << 16;
 const HELD: usize = 1 << 22;
 
@@ -73,7 +73,7 @@ fn write_table(
 /// Gives the first rows of such a file to a sink.
 ///
 /// # Errors
-/// Those of the file and of the sink, and [`ErrorKind::InvalidData`] where the file is not a table of numbers with these names.
+/// The errors of the file and of the sink, and [`ErrorKind::InvalidData`] if the file is not a table of numbers with these names.
 pub(crate) fn read(
     path: &Path,
     names: &[String],

@@ -7,8 +7,8 @@ use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// The file `OUT.part` beside an output, in which rows are kept until the output can be written whole. It is locked as long as this
-/// value lives, so that two processes never write into one.
+/// The file `OUT.part` beside an output, which keeps rows until the output can be written whole. It is locked while this value lives, so
+/// that two processes never write into it.
 #[derive(Debug)]
 pub(crate) struct PartFile {
     path: PathBuf,
@@ -24,10 +24,10 @@ impl PartFile {
         out.with_file_name(name)
     }
 
-    /// Opens the file beside `out` with what is in it, or makes an empty one.
+    /// Opens the file beside `out` with its content, or makes an empty one.
     ///
     /// # Errors
-    /// [`CliError::Busy`] where another process has it, [`CliError::Write`] where it cannot be made.
+    /// [`CliError::Busy`] if another process has the file, [`CliError::Write`] if it cannot be made.
     pub(crate) fn lock(out: &Path) -> Result<Self, CliError> {
         let path = Self::path_of(out);
         match locked(&path).map_err(|source| CliError::Write { path: path.clone(), source })? {
@@ -41,17 +41,17 @@ impl PartFile {
         }
     }
 
-    /// Whether it was not there before.
+    /// Whether this value made the file.
     pub(crate) fn is_new(&self) -> bool {
         self.new
     }
 
-    /// How many bytes it has.
+    /// The size of the file (bytes).
     pub(crate) fn len(&self) -> Result<u64, CliError> {
         Ok(self.file.metadata().map_err(|source| self.failed(source))?.len())
     }
 
-    /// Where the file is.
+    /// The path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -81,7 +81,7 @@ impl PartFile {
         })
     }
 
-    /// Removes the file. Should that fail a file is left that does no harm.
+    /// Removes the file. If that fails, the file that is left does no harm.
     pub(crate) fn remove(self) {
         let _ = std::fs::remove_file(&self.path);
     }

@@ -18,7 +18,7 @@ const HALVINGS: i32 = 6;
 /// Points of the curve of a picture.
 const POINTS: u32 = 360;
 
-/// What was measured.
+/// The measurements.
 struct MeasuredPhase {
     step: f64,
     turns: Vec<f64>,
@@ -83,8 +83,8 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     }
 }
 
-/// The steps of a loop: as many as one period has at the step of the scene, or as its pieces between corners need; refused where all loops have
-/// more steps than any run may have.
+/// The steps of a loop: as many as one period has at the step of the scene, or as its pieces between corners need; refused if all loops
+/// together have more steps than any run may have.
 fn steps_of_a_loop(scene: &Scene, period: f64, loops: u64) -> Result<u64, CliError> {
     let step = scene.run.actual_step();
     let whole = (period / step).round().max(1.0);

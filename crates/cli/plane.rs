@@ -84,7 +84,7 @@ impl Plane {
     /// The surface in a system.
     ///
     /// # Errors
-    /// That the system has no such quantity.
+    /// The message if the system has no such quantity.
     pub(crate) fn on(&self, system: &Built<'_>) -> Result<Surface, String> {
         Ok(match &self.what {
             What::Of(name, value) => {
@@ -95,7 +95,7 @@ impl Plane {
         })
     }
 
-    /// What a section shows where nobody says: of a sleigh what it turns by, else the first coordinate that is not the plane's, and its
+    /// The default axes of a section: for a sleigh by the quantity of the plane; otherwise the first coordinate that is not the plane's, and its
     /// rate.
     pub(crate) fn axes(&self, system: &Built<'_>) -> [String; 2] {
         let name = if let What::Of(name, _) = &self.what { name.as_str() } else { "t" };

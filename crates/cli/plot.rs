@@ -13,9 +13,9 @@ use scene::AnyScene;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// So many nodes of a run are drawn at most: a picture shows no more.
+/// Maximum number of nodes of a run that are drawn: a picture shows no more.
 const NODES: u64 = 20_000;
-/// What of a sleigh is drawn unless columns are named; `path` is x and y.
+/// The default columns of a sleigh; `path` is x and y.
 const SLEIGH: [&str; 7] = ["path", "speed", "turn_rate", "heading", "energy", "constraint", "constraint_force"];
 /// The name of the panel of x and y.
 const PATH: &str = "path";
@@ -94,7 +94,7 @@ fn format_of(path: &Path) -> Result<FigureFormat, CliError> {
     }
 }
 
-/// What the figure says it shows.
+/// The title of the figure.
 pub(crate) fn title(scene: &AnyScene, runs: &[(String, Columns)]) -> String {
     let by = match runs {
         [(method, _)] => format!("{method}, "),

@@ -19,14 +19,14 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// The longest duration (s) that is chosen without being asked for.
+/// Longest default duration (s).
 const DURATION: f64 = 20.0;
-/// How well the reference is then known.
+/// Error (m or rad) that the reference of a default duration should not exceed.
 const KNOWN: f64 = 1e-12;
-/// How often the duration is halved for that.
+/// Maximum number of times that a default duration is halved to reach that error.
 const HALVINGS: u32 = 6;
 
-/// Errors within so many times that of the reference are all the same.
+/// Errors below this multiple of the reference's error count as equal.
 const CLEAR: f64 = 10.0;
 
 /// `noslip precision`: what accuracy costs in time.
@@ -87,7 +87,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     unless_interrupted(made, None, failed)
 }
 
-/// What was left out where a signal ended the work; nothing where all was done.
+/// The unfinished part if a signal ended the work; `None` if all was done.
 fn unfinished(measured: &Measurement, climbed: usize, methods: usize) -> Option<String> {
     let (made, all) = (measured.clock.rounds, rounds());
     if climbed < methods {
@@ -97,7 +97,7 @@ fn unfinished(measured: &Measurement, climbed: usize, methods: usize) -> Option<
         .then(|| format!("all {methods} methods have their errors, and their times are of {made} of {all} rounds"))
 }
 
-/// What made the points.
+/// The provenance of the points.
 fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measurement) -> Provenance {
     let PrecisionArguments { methods, alpha, longest, with, csv, report, .. } = arguments;
     let command = CommandLine::of("precision", &arguments.scene, &arguments.set);
@@ -111,8 +111,7 @@ fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measu
     Provenance::on((scene.title(), scene.to_toml().ok()), Some(&command), notes)
 }
 
-/// Measures what accuracy costs on a scene, by runs of `longest` (s) at most; of a duration that is `chosen` for the user there may be
-/// less.
+/// Measures what accuracy costs on a scene, by runs of `longest` (s) at most. A duration that is `chosen` for the user may be shortened.
 pub(crate) fn measure(
     scene: &AnyScene,
     methods: &[Method],
@@ -125,7 +124,7 @@ pub(crate) fn measure(
     Measure { scene, methods, longest, chosen, interrupt }.on(&built.system(), (&built.q, &built.v))
 }
 
-/// What keeps a method from having any point; a refusal only where the method was asked for by name.
+/// The reason that a method has no point at all; a refusal counts only if the user named the method.
 fn failure(curve: &Curve, named: bool) -> Option<String> {
     if let Some(reason) = curve.refusal {
         return named.then(|| format!("{} refused: {reason}", curve.method));
@@ -139,7 +138,7 @@ struct Measure<'a> {
     scene: &'a AnyScene,
     methods: &'a [Method],
     longest: f64,
-    /// The duration is not the user's: it may be less.
+    /// True if the duration is a default, which may be shortened.
     chosen: bool,
     interrupt: &'a Interrupt,
 }
@@ -178,13 +177,13 @@ impl Measure<'_> {
         let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut progress);
         progress.bar.finish_and_clear();
         let mut facts = facts::of(self.scene)?;
-        // The steps are those of the ladders, not the scene's.
+        // The last fact gives the scene's steps; these runs use the steps of the ladders.
         facts.pop();
         Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
     }
 }
 
-/// The end in closed form, with its distance from the computed one as its error; the computed end where there is none.
+/// The end in closed form, with its distance from the computed end as its error; the computed end if there is no closed form.
 fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &[f64]) -> f64) -> KnownEnd<Vec<f64>> {
     let (end, steps, error) = (computed.q.clone(), computed.steps, computed.error);
     match exact {

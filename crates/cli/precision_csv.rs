@@ -1,4 +1,4 @@
-//! What `noslip precision` measured, as CSV.
+//! The results of `noslip precision`, as CSV.
 
 use crate::csv_text::quoted;
 use crate::provenance::DescribedColumn;

@@ -1,4 +1,4 @@
-//! What `noslip precision` says: the same values as a table, as JSON and in the report.
+//! The results of `noslip precision`: the same values as a table, as JSON and in the report.
 
 use crate::json::failure;
 use crate::measurement::Measurement;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 const POINTS: [&str; 8] = ["method", "step [s]", "tolerance", "steps", "error", "wall [s]", "CPU [s]", "spread"];
 const METHODS: [&str; 8] = ["method", "order", "slope", "points", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
 
-/// What the columns mean.
+/// The meaning of the columns.
 const INTRO: &str = "Each method runs with a ladder of steps, an adaptive method with a ladder of tolerances. \
     Error: distance of the end from the \
     reference, in metres or radians, whichever is larger. Wall, CPU: elapsed time and processor time of a whole run, medians \
@@ -83,7 +83,7 @@ fn verdicts(curves: &[Curve]) -> String {
     text
 }
 
-/// What the errors are measured from, in words.
+/// The reference of the errors, in words.
 pub(crate) fn reference(measured: &Measurement) -> String {
     let known = &measured.reference;
     let (steps, error) = (known.steps, number(known.error));
@@ -213,7 +213,7 @@ fn json_method(curve: &Curve) -> Value {
     object
 }
 
-/// What the diagrams show of a method.
+/// The curve of a method in the diagrams.
 fn drawn(curve: &Curve) -> CostCurve {
     let label = curve.label();
     let point = |point: &PrecisionPoint| {

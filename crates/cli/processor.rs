@@ -1,7 +1,7 @@
 //! Whether the processor is one that this program was built for: a build for one machine uses its instructions everywhere, and another
 //! machine ends it without a word.
 
-/// What the compiler was told to use, by the names of Linux.
+/// The instructions that the compiler was told to use, by the names of Linux.
 const BUILT_WITH: [(bool, &str); 10] = [
     (cfg!(target_feature = "avx"), "avx"),
     (cfg!(target_feature = "avx2"), "avx2"),
@@ -15,7 +15,7 @@ const BUILT_WITH: [(bool, &str); 10] = [
     (cfg!(target_feature = "avx512vl"), "avx512vl"),
 ];
 
-/// What is wrong where the processor lacks instructions that the program uses, as far as the system tells (Linux, x86-64).
+/// The error if the processor lacks instructions that the program uses, as far as the system tells (Linux, x86-64).
 ///
 /// The detection of the standard library takes for granted what the program was built for, so it says nothing of that.
 #[must_use]

@@ -1,8 +1,8 @@
-//! What the last bits of results depend on beside their scene.
+//! The program's part in the last bits of results: its version and instructions.
 
 use std::env::consts::ARCH;
 
-/// The version of the program, with a hash of its sources where they were there when it was built: two builds of one version may differ.
+/// The version of the program, with a hash of its sources if they were present when it was built: two builds of one version may differ.
 pub(crate) fn version() -> String {
     match env!("NOSLIP_SOURCES") {
         "" => env!("CARGO_PKG_VERSION").to_owned(),

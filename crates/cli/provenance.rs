@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// What made a file, and the units of its columns: a document of "CSV on the Web" (W3C 2015), whose notes name the program, the command
-/// that makes the file again, and the scene.
+/// The provenance of a file, and the units of its columns: a document of "CSV on the Web" (W3C 2015), whose notes name the program, the
+/// command that makes the file again, and the scene.
 #[derive(Debug, Clone)]
 pub(crate) struct Provenance {
     title: String,
@@ -16,7 +16,7 @@ pub(crate) struct Provenance {
 }
 
 impl Provenance {
-    /// Of rows that a command computes; `notes` are an object with whatever else is to be told.
+    /// The provenance of rows that a command computes; `notes` is an object with further notes.
     pub(crate) fn new(title: &str, command: Option<&CommandLine>, mut notes: Value) -> Self {
         notes["program"] = json!(format!("noslip {}", program::version()));
         notes["instructions"] = json!(program::instructions());
@@ -26,8 +26,8 @@ impl Provenance {
         Self { title: title.to_owned(), notes }
     }
 
-    /// Of rows that are computed on a scene: its title, and its text with all numbers as they were used, whatever the command line said
-    /// instead of the file.
+    /// The provenance of rows that are computed on a scene: its title, and its text with all numbers as they were used, including changes
+    /// by the command line.
     pub(crate) fn on((title, text): (&str, Option<String>), command: Option<&CommandLine>, mut notes: Value) -> Self {
         if let Some(text) = text {
             notes["scene"] = json!(text);
@@ -35,7 +35,7 @@ impl Provenance {
         Self::new(title, command, notes)
     }
 
-    /// Says how far the work came, where a signal ended it.
+    /// Adds how far the work came, if a signal ended it.
     pub(crate) fn interrupted(mut self, made: Option<&str>) -> Self {
         made.into_iter().for_each(|made| self.notes["interrupted"] = json!(made));
         self

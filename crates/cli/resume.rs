@@ -7,16 +7,16 @@ use scene::RunSettings;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// The largest checkpoint that is read (bytes): ten times that of a train of a hundred thousand trailers.
+/// The largest checkpoint that is read (bytes): ten times the checkpoint of a train of a hundred thousand trailers.
 const LARGEST: u64 = 1 << 28;
 
-/// What tells the run of a scene, of that name and with these contents, with a method from all others. The contents have no duration: a
-/// longer run begins with the shorter one.
+/// Identifies the run of a scene, with its name and contents, by a method. The contents have no duration: a longer run begins with the
+/// shorter one.
 pub(crate) fn identity(scene: (&str, &dyn std::fmt::Debug), method: &Method, schedule: &Schedule) -> Checkpoint {
     Checkpoint::of(pairs(scene, method, schedule))
 }
 
-/// The same of a run whose record depends on its length too.
+/// As [`identity`], for a run whose record also depends on its length.
 pub(crate) fn identity_of_whole(
     scene: (&str, &dyn std::fmt::Debug),
     method: &Method,
@@ -66,7 +66,8 @@ pub(crate) fn read(path: &Path, identity: &Checkpoint) -> Result<Checkpoint, Cli
     Ok(checkpoint)
 }
 
-/// Writes the checkpoints of a run to a file, where there is one. A save that fails is warned of at once, and the next is tried all the same.
+/// Writes the checkpoints of a run to a file, if there is one. A save that fails after a good one is warned of at once; the next save is
+/// tried all the same.
 #[derive(Debug)]
 pub(crate) struct Saver<'a> {
     path: Option<&'a Path>,
@@ -74,7 +75,7 @@ pub(crate) struct Saver<'a> {
 }
 
 impl<'a> Saver<'a> {
-    /// Saves to that file.
+    /// Saves to the file `path`.
     pub(crate) fn new(path: Option<&'a Path>) -> Self {
         Self { path, failed: None }
     }
@@ -83,7 +84,7 @@ impl<'a> Saver<'a> {
     pub(crate) fn save(&mut self, made: &Checkpoint) {
         let Some(path) = self.path else { return };
         let failed = write(path, made).err();
-        // Once: what fails for lack of room fails at every save until there is room.
+        // Once: a save that fails for lack of room fails each time until there is room.
         if let (None, Some(error)) = (&self.failed, &failed) {
             terminal::say("warning", &format!("{error}; the run goes on, and the next save is tried"));
         }

@@ -1,8 +1,8 @@
-//! What a row of `compare --json` says of constraint and energy.
+//! Verdicts on constraint and energy from a row of `compare --json`.
 
 use serde_json::Value;
 
-/// What the energy error does; its size in J, and its slope in J/s.
+/// The course of the energy error; its size in J, and its slope in J/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Energy {
     Rounding,
@@ -14,7 +14,7 @@ pub(crate) enum Energy {
 }
 
 impl Energy {
-    /// Of a row of `compare --json`.
+    /// The verdict from a row of `compare --json`.
     pub(crate) fn of(row: &Value) -> Self {
         let number = |key: &str| row["energy"][key].as_f64();
         let most = number("max_error").unwrap_or(f64::NAN);
@@ -56,7 +56,7 @@ pub(crate) fn slips(row: &Value) -> bool {
     row["constraint"]["max"].as_f64().is_none_or(|slip| slip > rounding(row))
 }
 
-/// What rounding may come to in a run: each step adds its own.
+/// The possible rounding in a run: each step adds its own.
 fn rounding(row: &Value) -> f64 {
     row["steps"].as_f64().unwrap_or(0.0) * f64::EPSILON
 }

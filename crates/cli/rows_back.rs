@@ -6,11 +6,11 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// Writes the first rows of a file of numbers as they were before the file was made of them: row after row, eight bytes a number. There
-/// are fewer where the file has fewer.
+/// Writes the first rows of a file of numbers as they were before the file was made from them: row after row, eight bytes a number. Fewer
+/// are written if the file has fewer.
 ///
 /// # Errors
-/// Those of the files, and [`ErrorKind::InvalidData`] where the file does not have these columns.
+/// The errors of the files, and [`ErrorKind::InvalidData`] if the file does not have these columns.
 pub(crate) fn copy(
     path: &Path,
     format: Format,
@@ -34,7 +34,7 @@ fn write_row(row: &[f64], to: &mut impl Write) -> Result<(), Error> {
     row.iter().try_for_each(|number| to.write_all(&number.to_le_bytes()))
 }
 
-/// So many bytes of the columns are in memory at a time.
+/// Number of bytes of the columns that are in memory at a time.
 const HELD: usize = 8 << 20;
 
 /// Some rows of every column at a time, from one open file.

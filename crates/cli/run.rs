@@ -64,7 +64,7 @@ fn asked(arguments: &RunArguments) -> Result<Option<OutputRequest<'_>>, CliError
     Ok(Some(asked))
 }
 
-/// What tells the run of a scene from others.
+/// Identifies the run of a scene.
 fn identity_of(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkpoint {
     match scene {
         AnyScene::Sleigh(scene) => identity(scene, method, schedule),
@@ -160,7 +160,7 @@ impl Run<'_> {
         };
         shown.bar.finish_and_clear();
         let (mut made, warning) = made?;
-        // What a command before the run has derived is not the run's.
+        // Formulas that a command derived before the run do not count.
         let derived = account.system.derivation_seconds() - derived;
         made.record.derivation_seconds = derived;
         made.record.wall_seconds = f64::max(made.record.wall_seconds - derived, 0.0);
@@ -171,7 +171,7 @@ impl Run<'_> {
         // A reader who has seen enough is no interruption.
         made.record.interrupted &= !closed;
         let Made { record, events } = &made;
-        // What was computed is shown even where its file could not be written.
+        // The results are shown even if their file could not be written.
         if self.arguments.scene.json {
             terminal::print_json(&account.object(&made))?;
         } else {

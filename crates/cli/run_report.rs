@@ -8,7 +8,7 @@ use crate::{facts, inspect, plot, table, terminal, train};
 use report::{HEADINGS, Report, SceneReport, Series};
 use scene::AnyScene;
 
-/// Makes the run, and its page where one is asked for. For the page it is made a second time, with fewer nodes kept.
+/// Makes the run, and its page if one is asked for. For the page it is made a second time, with fewer nodes kept.
 pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let Some(folder) = &arguments.report else { return crate::run::run(arguments) };
     let shared = &arguments.scene;
@@ -22,7 +22,7 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let folder = ClaimedFolder::new(folder, shared.force)?;
     let scene = inspect::load_any(shared, arguments.method.as_deref())?;
     let outcome = crate::run::run(arguments);
-    // What failed on the way is shown as far as it came.
+    // A run that failed on the way is shown as far as it came.
     if !matches!(outcome, Ok(()) | Err(CliError::Computation(_))) {
         return outcome;
     }
@@ -71,7 +71,7 @@ fn row(NamedColumn { name, unit, values }: &NamedColumn) -> Vec<String> {
     std::iter::once(format!("{name}{unit}")).chain(numbers).collect()
 }
 
-/// What the pictures of a page show of the run.
+/// The curves of the run in the pictures of a page.
 fn series(method: &str, columns: &Columns, failed: bool) -> Series {
     let column = |name: &str| columns.iter().find(|column| column.name == name).map(|column| column.values.clone());
     let values = |name: &str| column(name).unwrap_or_default();

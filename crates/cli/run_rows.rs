@@ -1,4 +1,4 @@
-//! The rows of a run: what made them, what tells the run from others, and where its output goes.
+//! The provenance of the rows of a run, the identity of the run, and its output.
 
 use crate::args::RunArguments;
 use crate::command_line::CommandLine;
@@ -12,7 +12,7 @@ use scene::{RunSettings, Scene};
 use serde_json::json;
 use std::cell::RefCell;
 
-/// What made the rows of a run, and the command that makes them again: with the step and the duration that were taken.
+/// The provenance of the rows of a run, with the command that makes them again: with the step and the duration that were taken.
 pub(crate) fn provenance(
     arguments: &RunArguments,
     (title, run, text): (&str, &RunSettings, Option<String>),
@@ -20,7 +20,7 @@ pub(crate) fn provenance(
 ) -> Provenance {
     let RunArguments { scene, every, substep, event, until, event_samples, tolerance, out, .. } = arguments;
     let mut command = CommandLine::of("run", &scene.scene, &scene.set).run(run, schedule.step);
-    // Of other methods the tolerance has chosen the step.
+    // For other methods the tolerance has chosen the step.
     let adaptive = METHODS.iter().any(|info| info.name == run.method && info.kind.is_adaptive());
     command = command.maybe("--tolerance", tolerance.filter(|_| adaptive));
     command = event.iter().fold(command, |command, trigger| command.with("--event", &trigger.text));
@@ -35,7 +35,7 @@ pub(crate) fn provenance(
     Provenance::on((title, text), Some(&command), notes)
 }
 
-/// What tells the run of a sleigh from others.
+/// Identifies the run of a sleigh.
 pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
     // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
     if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {
@@ -61,7 +61,7 @@ pub(crate) fn with_position(made: &Checkpoint, output: &RefCell<Option<Output<'_
     made
 }
 
-/// A run that ends when nobody reads its rows any more.
+/// A run that ends when its rows are no longer read.
 pub(crate) struct Read<'a, 'b> {
     pub(crate) progress: &'a mut dyn Progress,
     pub(crate) output: &'a RefCell<Option<Output<'b>>>,
@@ -77,7 +77,7 @@ impl Progress for Read<'_, '_> {
     }
 }
 
-/// Tells what a run came to, where its rows do not go: on standard error where they go to standard output.
+/// Prints the outcome of a run: on standard error if its rows go to standard output, otherwise on standard output.
 pub(crate) fn tell(out: Option<OutputRequest<'_>>, text: &str) -> Result<(), CliError> {
     if out.is_some_and(|asked| asked.path.is_none()) {
         terminal::tell(text);

@@ -6,7 +6,7 @@ use dla::{Checkpoint, Mechanism};
 use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
 use std::path::{Path, PathBuf};
 
-/// Where the runs of a comparison are saved, a checkpoint for each method, and from where they go on.
+/// The folders in which the runs of a comparison are saved, a checkpoint for each method, and from which they go on.
 #[derive(Debug, Default)]
 pub(crate) struct Saves {
     to: Option<PathBuf>,
@@ -15,7 +15,7 @@ pub(crate) struct Saves {
 }
 
 impl Saves {
-    /// What the arguments ask for; a folder that cannot be written in, or is there already, is refused before the work.
+    /// The saves that the arguments ask for. A folder that cannot be written in, or exists already, is refused before the work.
     pub(crate) fn of(arguments: &CompareArguments) -> Result<Self, CliError> {
         let CompareArguments { checkpoint, checkpoint_every, resume, scene, .. } = arguments;
         // A comparison that is resumed goes on saving into its folder.
@@ -35,8 +35,7 @@ impl Saves {
         self.to.as_deref()
     }
 
-    /// Makes a run of a scene, of that name and with these contents: at once where nothing is to be saved, else from checkpoint to
-    /// checkpoint.
+    /// Makes a run of a scene, with its name and contents: at once if nothing is to be saved, else from checkpoint to checkpoint.
     pub(crate) fn run(
         &self,
         scene: (&str, &dyn std::fmt::Debug),

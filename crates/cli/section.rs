@@ -17,12 +17,12 @@ use report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, Quantity, StartPlace};
 use serde_json::{Value, json};
 
-/// How long each motion is followed where nobody says (s).
+/// Default duration of each motion (s).
 const DURATION: f64 = 2000.0;
 /// The most starts, and the most crossings of all of them.
 const MOST_STARTS: u64 = 100_000;
 
-/// `noslip section`: where motions cross a plane.
+/// `noslip section`: the crossings of a plane by motions.
 pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     let shared = &arguments.scene;
     let duration = shared.duration.or(Some(DURATION));
@@ -68,7 +68,7 @@ struct PlaneCrossing {
 
 /// A crossing.
 struct SectionPoint {
-    /// When (s).
+    /// The time (s).
     t: f64,
     /// The quantities that tell the state.
     state: Vec<f64>,
@@ -76,7 +76,7 @@ struct SectionPoint {
     shown: [f64; 2],
 }
 
-/// What is told of a section: the quantities of the system that tell its state, and those shown.
+/// The columns of a section: the quantities of the system that tell its state, and the ones shown.
 struct Told {
     state: Vec<Column>,
     axes: [Quantity; 2],
@@ -157,7 +157,7 @@ impl Sections<'_> {
 }
 
 impl Sections<'_> {
-    /// What made the points.
+    /// The provenance of the points.
     fn provenance(&self, axes: &[Quantity; 2]) -> Provenance {
         let SectionArguments { scene: shared, plane, direction, starts, energy, out, .. } = self.arguments;
         let (run, step) = (self.scene.run(), self.scene.schedule().step);

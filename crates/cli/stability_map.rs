@@ -27,7 +27,7 @@ pub(crate) struct Map<'a> {
     pub(crate) file: Option<ChartFile<'a>>,
 }
 
-/// What a start came to.
+/// The result of a start.
 enum Cell {
     /// The largest exponent, with its interval (1/s), and what the motion is.
     Exponent(f64, Option<f64>, MotionVerdict),

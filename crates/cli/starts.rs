@@ -2,7 +2,7 @@ use scene::{Built, SceneSystem, StartPlace};
 use sleigh::Sleigh;
 use std::f64::consts::TAU;
 
-/// The start with velocities so many times as large that it has that energy (J); none where it cannot.
+/// The start with its velocities scaled so that its energy is `wanted` (J); `None` if no factor does that.
 pub(crate) fn with_energy(system: &Built<'_>, (q, v): &StartPlace, wanted: f64) -> Option<StartPlace> {
     // The energy is quadratic in the velocity.
     let scaled = |factor: f64| -> Vec<f64> { v.iter().map(|v| factor * v).collect() };
@@ -24,8 +24,8 @@ fn sequence(dimensions: usize) -> impl Fn(u64, usize) -> f64 {
     move |i, k| (root.powi(-(k as i32 + 1)) * i as f64).fract()
 }
 
-/// `count` starts: the first as it is, and others at the same place and of the same energy, with directions of motion that fill the sphere of
-/// directions evenly; those of a sleigh differ in heading too. Those that the energy does not allow are left out.
+/// `count` starts: `first`, then starts at the same place and of the same energy, with directions of motion that fill the sphere of
+/// directions evenly. Starts of a sleigh differ in heading too. Starts that the energy does not allow are left out.
 pub(crate) fn spread(system: &Built<'_>, first: &StartPlace, sleigh: Option<&Sleigh>, count: u64) -> Vec<StartPlace> {
     let wanted = system.mechanism().energy(0.0, &first.0, &first.1);
     let turned = |i: u64| match system.sleigh().zip(sleigh) {
@@ -55,12 +55,12 @@ fn turned(
         .try_fold(first.clone(), |start, (name, value)| system.with(&start, system.named(name)?, value))
 }
 
-/// The system at the same place, its quasi-velocities in a direction of which the kinetic energy is a sphere.
+/// The system at the same place, with quasi-velocities in direction `i` of a sequence that fills the sphere of kinetic energy evenly.
 fn directed(system: &Built<'_>, first: &StartPlace, i: u64) -> Option<StartPlace> {
     let (n, m) = system.own();
     let count = n - m;
     let next = sequence(count);
-    // Two numbers make two that are normally distributed (Box and Muller 1958), and those are in no direction more than in another.
+    // Pairs of uniform numbers make pairs of normal ones (Box and Muller 1958), whose directions are uniform.
     let direction: Vec<f64> = (0..count)
         .map(|k| {
             let [a, b] = [2 * (k / 2), 2 * (k / 2) + 1].map(|k| next(i, k));

@@ -7,7 +7,7 @@ use scene::{Built, Coordinate, SceneSystem};
 use serde_json::{Map, Value, json};
 use sleigh::SleighState;
 
-/// What a scene says of a steady motion, for a program and for a person.
+/// A steady motion as fields for a program and as lines for a person.
 pub(crate) struct SteadyMotion {
     pub(crate) fields: Map<String, Value>,
     pub(crate) lines: Vec<(&'static str, String)>,
@@ -52,7 +52,7 @@ fn of_sleigh(system: &dyn SceneSystem, e: &Equilibrium) -> SteadyMotion {
     SteadyMotion { fields, lines: vec![("motion", what)] }
 }
 
-/// Its rates by their names, and the coordinates on which the equations depend, with their values.
+/// The rates by their names, and the coordinates on which the equations depend, with their values.
 fn of_text(coordinates: &[Coordinate], e: &Equilibrium) -> SteadyMotion {
     let rates: Vec<_> = coordinates.iter().zip(&e.v).map(|(of, rate)| (format!("{}'", of.name), *rate)).collect();
     let place = e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
@@ -69,19 +69,19 @@ fn of_text(coordinates: &[Coordinate], e: &Equilibrium) -> SteadyMotion {
 
 /// How stable a steady motion is, of the flow and of a method.
 pub(crate) struct Stability {
-    /// Of how many parameters there are motions like this one.
+    /// Number of parameters of the family of steady motions around this one.
     pub(crate) family: usize,
     pub(crate) stable: bool,
     /// The eigenvalues of the flow (1/s), real and imaginary part.
     pub(crate) flow: Vec<[f64; 2]>,
-    /// Those of a step of the method.
+    /// The eigenvalues of a step of the method.
     pub(crate) map: Result<Vec<[f64; 2]>, MapError>,
-    /// The longest step, where the flow is stable.
+    /// The longest step; `None` if the flow is unstable.
     pub(crate) limit: Option<StepLimit>,
 }
 
 impl Stability {
-    /// The object of a motion, which begins with what its scene says of the motion.
+    /// The object of a motion; it begins with the fields of the scene.
     pub(crate) fn object(&self, mut motion: Map<String, Value>) -> Value {
         let fields = [
             ("family", json!(self.family)),
@@ -97,7 +97,7 @@ impl Stability {
         Value::Object(motion)
     }
 
-    /// The lines of a motion, which begin with those of its scene.
+    /// The lines of a motion; they begin with the lines of the scene.
     pub(crate) fn lines(&self, mut motion: Vec<(&'static str, String)>) -> String {
         motion.extend([
             ("", if self.stable { "stable".to_owned() } else { "unstable".to_owned() }),
@@ -110,10 +110,10 @@ impl Stability {
     }
 }
 
-/// Where steady motions were looked for.
+/// The extent of the search for steady motions.
 pub(crate) struct Searched {
     pub(crate) places: usize,
-    /// How far from the start in a coordinate (m, rad).
+    /// Largest distance from the start in a coordinate (m or rad).
     pub(crate) reach: f64,
     pub(crate) motions: usize,
 }
@@ -134,7 +134,7 @@ impl Searched {
     }
 }
 
-/// What `noslip equilibria --json` prints of a scene, with the step (s).
+/// The object that `noslip equilibria --json` prints; `step` in s.
 pub(crate) fn object(
     scene: &str,
     method: &Method,
@@ -148,7 +148,7 @@ pub(crate) fn object(
     })
 }
 
-/// What the motions of a scene are headed with.
+/// The heading above the motions of a scene.
 pub(crate) fn heading((title, name): (&str, &str), method: &Method, step: f64) -> String {
     format!("{title} ({name}): steady motions, and those of {} with steps of {step} s\n", method.info().name)
 }

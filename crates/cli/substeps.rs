@@ -1,10 +1,10 @@
-//! What `noslip run` says of steps that are made in parts, with `--substep`, and of those that could be.
+//! The report of `noslip run` on steps divided into parts by `--substep`, and on steps that could be divided.
 
 use crate::table;
 use harness::{Record, SubstepSummary};
 use serde_json::{Value, json};
 
-/// Adds to the object of a run what became of its divided steps, or to the hint of its failure that there is such a thing.
+/// Adds the count of divided steps to the object of a run, or adds the offer to divide steps to the hint of its failure.
 pub(crate) fn add_json(object: &mut Value, record: &Record) {
     if let Some(SubstepSummary { divided, parts, most, undivided }) = &record.substeps {
         object["substeps"] = json!({"divided": divided, "parts": parts, "most": most});
@@ -17,7 +17,7 @@ pub(crate) fn add_json(object: &mut Value, record: &Record) {
     }
 }
 
-/// One line for a person; none of a run whose steps might not be divided.
+/// One line for a person; empty if the run could not divide steps.
 pub(crate) fn told(record: &Record) -> String {
     let Some(SubstepSummary { divided, parts, most, .. }) = record.substeps else { return String::new() };
     let told = match divided {
@@ -27,7 +27,7 @@ pub(crate) fn told(record: &Record) -> String {
     table::aligned(&[("substeps", told)])
 }
 
-/// The failure of a run, with what its parts came to, or with the offer to make them.
+/// The failure of a run, with the outcome of its substeps or with the offer to make substeps.
 pub(crate) fn failure(record: &Record) -> Option<String> {
     let failure = table::failure(record)?;
     let more = match &record.substeps {
@@ -40,7 +40,7 @@ pub(crate) fn failure(record: &Record) -> Option<String> {
     Some(failure + &more)
 }
 
-/// What may be done about a step that is too long, where it has not been tried.
+/// The advice to divide a step that failed; `None` if that was tried or would not help.
 fn offer(record: &Record) -> Option<&'static str> {
     let failed = record.failure.as_ref().filter(|_| record.substeps.is_none())?;
     failed.source.may_hold_in_parts().then_some("divide such steps into parts (--substep)")

@@ -23,7 +23,7 @@ pub(crate) const COLUMNS: [&str; 14] = [
     "cost [s/s]",
 ];
 
-/// What the columns mean.
+/// The meaning of the columns.
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
     |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the largest residual of the discrete constraint between two \
     nodes, which is round-off for the methods that solve that constraint, such as dla. Energy error: the largest |E - E0 - work| at a \
@@ -34,11 +34,11 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     steps alone, median of repeated runs. Cost: that time for each second of the motion. A method \
     that failed has no numbers: its row says at which step, when and why.";
 
-/// One method's run, the number of coordinates forgotten.
+/// The row of one method, for any number of coordinates.
 pub(crate) struct ComparisonRow {
     pub(crate) cells: Vec<String>,
     pub(crate) json: serde_json::Value,
-    /// Whom it overtakes in a longer run, where it does.
+    /// The methods that it overtakes in a longer run; `None` if there are none.
     pub(crate) better: Option<String>,
     pub(crate) failure: Option<String>,
     /// The method refuses the scene.
@@ -46,7 +46,7 @@ pub(crate) struct ComparisonRow {
 }
 
 impl ComparisonRow {
-    /// The failure, unless all that happened is that a method which nobody asked for by name refuses the scene.
+    /// The failure; `None` if the method only refuses the scene.
     pub(crate) fn unexpected(self) -> Option<String> {
         self.failure.filter(|_| !self.refused)
     }
@@ -57,7 +57,7 @@ pub(crate) fn number(value: f64) -> String {
     Shown(value).to_string()
 }
 
-/// A row of a comparison; of a method that refuses the scene or failed, a short one, whose last cell says why, and at which step.
+/// A row of a comparison. If the method refuses the scene or failed, the row is short, and its last cell says why and at which step.
 pub(crate) fn cells(record: &Record, error: Option<f64>) -> Vec<String> {
     if let Some(reason) = record.refusal() {
         return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("refused: {reason}")];
@@ -86,19 +86,19 @@ pub(crate) fn cells(record: &Record, error: Option<f64>) -> Vec<String> {
     ]
 }
 
-/// The constraint over steps; of an assembly it is not measured.
+/// The constraint over steps; `-` if it was not measured.
 fn over_steps(most: f64) -> String {
     if most.is_nan() { "-".to_owned() } else { format!("{most:.1e}") }
 }
 
-/// The methods that a method overtakes in a longer run, where there are any.
+/// The methods that a method overtakes in a longer run; `None` if there are none.
 pub(crate) fn better(record: &Record, better: &[(&str, f64)]) -> Option<String> {
     let overtaken: Vec<String> = better.iter().map(|(name, from)| format!("{name} from {from:.1e} s")).collect();
     let name = record.method.name;
     (!overtaken.is_empty()).then(|| format!("{name} has a smaller energy error than {}", overtaken.join(", ")))
 }
 
-/// The table of a comparison; as several tables below each other where one would be wider than there is room for.
+/// The table of a comparison, split into several tables if it is wider than `room` (characters).
 pub(crate) fn comparison(
     (title, name, duration): (&str, &str, f64),
     rows: &[ComparisonRow],
@@ -186,7 +186,7 @@ fn tabulated(header: &[&str], rows: &[Vec<String>], alignment: CellAlignment) ->
     text
 }
 
-/// Where the run of a sleigh ends, for a person.
+/// The end of the run of a sleigh, for a person.
 pub(crate) fn end_of_sleigh(end: &SleighState) -> Vec<(String, String)> {
     let lines = [
         ("position", format!("x = {} m, y = {} m", number(end.x), number(end.y))),
@@ -196,7 +196,7 @@ pub(crate) fn end_of_sleigh(end: &SleighState) -> Vec<(String, String)> {
     lines.map(|(name, value)| (name.to_owned(), value)).to_vec()
 }
 
-/// The result of one run of a scene of that title and name, with lines on where it ends.
+/// The result of one run of the scene `title`, `name`; `end` has the lines on the state at its end.
 pub(crate) fn one_run_of(
     (title, name): (&str, &str),
     record: &Record,
@@ -228,7 +228,7 @@ pub(crate) fn one_run_of(
     aligned(&lines)
 }
 
-/// How long the equations took to derive, where a person notices; none of others.
+/// The time to derive the equations; empty if it is too short to notice.
 pub(crate) fn derivation(record: &Record) -> String {
     const NOTICED: f64 = 0.1;
     let seconds = record.derivation_seconds;
@@ -254,7 +254,7 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
     text
 }
 
-/// Lines of names and values, as [`aligned`] makes them here and there, in the same two columns.
+/// Aligns lines from several calls of [`aligned`] in the same two columns.
 pub(crate) fn realigned(text: &str) -> String {
     let lines: Vec<(&str, &str)> = text
         .lines()
@@ -264,7 +264,7 @@ pub(crate) fn realigned(text: &str) -> String {
     aligned(&lines)
 }
 
-/// What is wrong with a run that reached its end with a place, a velocity or an energy that is not a finite number.
+/// The error of a run that ended with a place, a velocity or an energy that is not a finite number; `None` if all are finite.
 pub(crate) fn not_finite(record: &Record) -> Option<String> {
     let energies = [record.energy.last, record.energy.work, record.energy.max_error];
     let finite = record.q.iter().chain(&record.v).chain(&energies).all(|number| number.is_finite());

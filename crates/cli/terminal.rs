@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
-/// Prints a result. Standard output may be full, which is an error, or closed by a reader who has seen enough, which
-/// is none: the rest of the work is done all the same.
+/// Prints a result. It is an error if standard output is full, but not if its reader has closed it: the rest of the work is done all the
+/// same.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     let text = &*harmless(text);
     if called::keep_out(text) {
@@ -43,15 +43,15 @@ impl Write for Out {
     }
 }
 
-/// Tells a result on standard error, where standard output has another.
+/// Prints a result on standard error, if standard output has another.
 pub(crate) fn tell(text: &str) {
     if !called::keep_err(text) {
-        // Where that cannot be written to, there is nobody left to tell.
+        // A failure to write there cannot be reported.
         let _ = std::io::stderr().write_all(text.as_bytes());
     }
 }
 
-/// How many columns a line of standard output has room for: what `COLUMNS` says, or the terminal; none elsewhere.
+/// The width of standard output (columns), from `COLUMNS` or from the terminal; `None` if neither tells it.
 pub(crate) fn width() -> Option<usize> {
     let asked = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse().ok());
     let terminal = || console::Term::stdout().size_checked().map(|(_, columns)| usize::from(columns));
@@ -63,7 +63,7 @@ pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), CliError> {
     print(&format!("{value:#}\n"))
 }
 
-/// Prints what clap has to say: on standard output the help or the version, on standard error what is wrong.
+/// Prints a message of clap: help and version on standard output, errors on standard error.
 pub(crate) fn print_usage(usage: &clap::Error) -> Result<(), CliError> {
     let keep = if usage.use_stderr() { called::keep_err } else { called::keep_out };
     if keep(&usage.to_string()) {
@@ -73,7 +73,7 @@ pub(crate) fn print_usage(usage: &clap::Error) -> Result<(), CliError> {
     if usage.use_stderr() { Ok(()) } else { accept_closed(printed) }
 }
 
-/// Says why a command failed, in colours where standard error is a terminal.
+/// Prints why a command failed, in colours if standard error is a terminal.
 pub(crate) fn fail(error: &CliError) {
     let coloured = console::colors_enabled_stderr() && std::env::var_os("NO_COLOR").is_none_or(|no| no.is_empty());
     let line = format!("error: {error}\n");
@@ -86,11 +86,11 @@ pub(crate) fn fail(error: &CliError) {
         _ => None,
     };
     let line = format!("{level} {}\n", message.unwrap_or_else(|| harmless(&error.to_string()).into_owned()));
-    // Where that cannot be written to, there is nobody left to tell.
+    // A failure to write there cannot be reported.
     let _ = std::io::stderr().write_all(line.as_bytes());
 }
 
-/// Says something on standard error. Where that cannot be written to, there is nobody left to tell.
+/// Prints a message on standard error. A failure to write there cannot be reported.
 pub(crate) fn say(level: &str, message: &impl Display) {
     let line = format!("{level}: {message}\n");
     let line = harmless(&line);

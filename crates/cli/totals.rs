@@ -1,4 +1,4 @@
-//! What each method came to over all scenes.
+//! The totals of each method over all scenes.
 
 use crate::row_verdict::{Energy, slips};
 use crate::table;

@@ -1,4 +1,4 @@
-//! What commands say of a train beside its first blade.
+//! The output of commands on a train besides its first blade.
 
 use crate::columns_file::Columns;
 use crate::table;
@@ -10,7 +10,7 @@ use sleigh::SleighState;
 /// A picture shows so many trailers.
 const SHOWN: usize = 60;
 
-/// Places and headings of the trailers along a run, one after the other: those that a picture shows.
+/// Places and headings along a run of the trailers that a picture shows, one trailer after the other.
 pub(crate) fn followers(train: &Train, columns: &Columns) -> Vec<Vec<[f64; 3]>> {
     let column =
         |name: &str| columns.iter().find(|column| column.name == name).map_or(&[][..], |column| &column.values);
@@ -27,7 +27,7 @@ pub(crate) fn followers(train: &Train, columns: &Columns) -> Vec<Vec<[f64; 3]>> 
     along
 }
 
-/// The same at the samples of a run.
+/// As [`followers`], at the samples of a run.
 pub(crate) fn followers_at(train: &Train, samples: &[Sample]) -> Vec<Vec<[f64; 3]>> {
     let place = |k: usize, sample: &Sample| {
         let SleighState { x, y, heading, .. } = train.blade(&sample.q, &[], k);
@@ -50,7 +50,7 @@ pub(crate) fn add_json(object: &mut Value, train: &Train, record: &Record) {
     object["last"] = json!({"x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate});
 }
 
-/// The same for a person.
+/// The hinges and the last blade, for a person.
 pub(crate) fn told(train: &Train, record: &Record) -> String {
     let last = last(train, record);
     let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);

@@ -10,15 +10,15 @@ use std::str::FromStr;
 /// A quantity by its name, and a value that it is to cross.
 #[derive(Debug, Clone)]
 pub(crate) struct Trigger {
-    /// As it was written.
+    /// The text as the user wrote it.
     pub(crate) text: String,
     name: String,
     value: f64,
-    /// Whether it is to rise, or to fall; both where nobody says.
+    /// True for a rising crossing, false for a falling one, `None` for both.
     rising: Option<bool>,
 }
 
-/// An angle under this and its own name is one whose turns count.
+/// Prefix to the name of an angle; with it whole turns count.
 const UNWRAPPED: &str = "unwrapped_";
 
 impl FromStr for Trigger {
@@ -38,28 +38,28 @@ impl FromStr for Trigger {
     }
 }
 
-/// What a quantity does at a trigger: the function that is zero there.
+/// The function of a trigger, zero at the crossing.
 #[derive(Debug, Clone, Copy)]
 struct TriggerFunction {
     value: f64,
-    /// Values a turn apart are the same.
+    /// Whether values a turn apart are the same.
     turns: bool,
 }
 
 impl TriggerFunction {
-    /// Of an angle it is the sine of half of what is missing: it has no other zero in a turn, where that of the whole has one half a turn
-    /// away, and it has the other sign in the next turn.
+    /// For an angle, the sine of half the distance from the value. It has one zero in a turn, while the sine of the whole distance has two;
+    /// its sign changes from turn to turn.
     fn of(self, number: f64) -> f64 {
         if self.turns { (0.5 * (number - self.value)).sin() } else { number - self.value }
     }
 
-    /// Whether the quantity rises where the function does, or falls.
+    /// Whether the quantity rises, given whether the function does.
     fn rises(self, number: f64, function_rises: bool) -> bool {
         if self.turns { function_rises == ((0.5 * (number - self.value)).cos() > 0.0) } else { function_rises }
     }
 }
 
-/// A trigger on the quantity that a system has by its name.
+/// A trigger with the quantity that it names in a system.
 #[derive(Debug)]
 pub(crate) struct WatchedTrigger<'a> {
     trigger: &'a Trigger,
@@ -68,10 +68,10 @@ pub(crate) struct WatchedTrigger<'a> {
 }
 
 impl Trigger {
-    /// The trigger on the quantity of its name among those of a system; with the prefix that counts turns where that is an angle.
+    /// Finds the quantity of a system that the trigger names. The prefix that counts turns applies to angles only.
     ///
     /// # Errors
-    /// [`CliError::Request`] where the system has no such quantity.
+    /// [`CliError::Request`] if the system has no such quantity.
     pub(crate) fn on(&self, system: &Built<'_>) -> Result<WatchedTrigger<'_>, CliError> {
         let find = |name: &str| Coordinate::of(system, name).ok();
         let unwrapped = || find(self.name.strip_prefix(UNWRAPPED)?).filter(|found| found.quantity.angle);
@@ -94,7 +94,7 @@ impl Trigger {
 }
 
 impl WatchedTrigger<'_> {
-    /// As it was written.
+    /// The text as the user wrote it.
     pub(crate) fn text(&self) -> &str {
         &self.trigger.text
     }
@@ -110,7 +110,7 @@ impl WatchedTrigger<'_> {
     }
 }
 
-/// An event that happened, the number of coordinates forgotten.
+/// An event that happened, for any number of coordinates.
 pub(crate) struct Happened<'a> {
     name: &'a str,
     t: f64,
@@ -148,7 +148,7 @@ impl<'a> Happened<'a> {
     }
 }
 
-/// What happened, for a program and for a person.
+/// The events of a run, for a program and for a person.
 pub(crate) struct Events {
     values: Vec<Value>,
     pub(crate) told: String,
@@ -162,13 +162,13 @@ impl Events {
         Self { values, told: told.concat(), close }
     }
 
-    /// Adds them to what `run --json` prints.
+    /// Adds the events to the object of `run --json`.
     pub(crate) fn add_to(&self, object: &mut Value) {
         object["events"] = json!(self.values);
         object["events_in_doubt"] = json!(self.close.map_or(0, doubts));
     }
 
-    /// Says where events may have been missed.
+    /// Warns if events may have been missed.
     pub(crate) fn warn(&self) {
         if let Some(close) = self.close {
             let advice = "--event-samples N and a shorter --step sample more times";
@@ -177,12 +177,12 @@ impl Events {
     }
 }
 
-/// How many reasons there are to doubt that all crossings were found.
+/// The number of reasons to doubt that all crossings were found.
 pub(crate) fn doubts(Close { count, unseen, .. }: Close) -> u64 {
     count + unseen
 }
 
-/// That crossings may have been missed, and why.
+/// The message that crossings may have been missed, with the reasons.
 pub(crate) fn in_doubt(Close { count, spacing, nearest, unseen }: &Close) -> String {
     let mut reasons = Vec::new();
     if *count > 0 {

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 /// A large system as an assembly of small ones: elements on coordinates that they share.
 ///
-/// A body brings coordinates of its own; what acts on bodies or joins them is an element on theirs. Lagrangian, forces and
-/// constraints of the whole are the sums and lists of those of the elements, so that its equations have a sparse matrix whose
+/// A body brings coordinates of its own; an effect or a joint is an element on the coordinates of bodies. The Lagrangian and forces of the
+/// assembly are the sums over its elements, and its constraints are all their constraints, so its equations have a sparse matrix whose
 /// pattern never changes.
 ///
 /// ```
@@ -34,17 +34,17 @@ pub struct Assembly {
     rows: usize,
 }
 
-/// An element where it acts.
+/// An element with its coordinates and rows in the assembly.
 #[derive(Debug, Clone)]
 pub(crate) struct PlacedElement {
     pub(crate) element: Arc<dyn Element>,
     pub(crate) name: &'static str,
-    /// The coordinates of the assembly that are those of the element.
+    /// The element's coordinates, as numbers of coordinates of the assembly.
     pub(crate) at: Box<[usize]>,
-    /// The first of its constraint rows.
+    /// The first of the element's constraint rows.
     pub(crate) row: usize,
     pub(crate) rows: usize,
-    /// Which of its coordinates each is measured from, where it says so.
+    /// For each coordinate of the element, the coordinate from which it is measured, if the element gives origins.
     pub(crate) origins: Option<Box<[Option<usize>]>>,
 }
 
@@ -66,7 +66,7 @@ impl Assembly {
         Self::default()
     }
 
-    /// Adds a system with coordinates of its own, and returns which those are.
+    /// Adds a system with coordinates of its own, and returns their numbers.
     pub fn body<Sys, const N: usize, const M: usize>(&mut self, name: &'static str, system: Sys) -> [usize; N]
     where
         Sys: System<N, M> + Piecewise + Send + Sync + 'static,
@@ -77,10 +77,10 @@ impl Assembly {
         at
     }
 
-    /// Adds a system on coordinates that there are: a spring between bodies, a force, a blade under a body.
+    /// Adds a system on existing coordinates: a spring between bodies, a force, a blade under a body.
     ///
     /// # Errors
-    /// [`AssemblyError::Coordinates`] where one of them is not there, or is named twice.
+    /// [`AssemblyError::Coordinates`] if a coordinate does not exist, or is named twice.
     pub fn attach<Sys, const N: usize, const M: usize>(
         &mut self,
         name: &'static str,
@@ -95,7 +95,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// Adds a joint on coordinates that there are.
+    /// Adds a joint on existing coordinates.
     ///
     /// # Errors
     /// As [`attach`](Self::attach).

@@ -4,17 +4,17 @@ use crate::local::WIDEST;
 use crate::pattern::Pattern;
 use crate::{Assembly, AssemblyState};
 
-/// What the elements contribute at one point, each in its own place, and the matrix and the vectors that these make.
+/// The contributions of the elements at one point, each in its own place, and the matrix and vectors made of them.
 #[derive(Debug)]
 pub(crate) struct Contributions {
-    /// Of one element after the other: momentum, level, block and rows.
+    /// For each element in turn: momentum, level, block and rows.
     each: Vec<f64>,
     starts: Vec<usize>,
-    /// Elements are evaluated in parallel from so many on.
+    /// Number of elements from which on they are evaluated in parallel.
     pub(crate) parallel: usize,
 }
 
-/// What an element is asked for.
+/// The question put to each element.
 pub(crate) type Ask<'a> = dyn Fn(&PlacedElement, ElementBlocks<'_>) + Sync + 'a;
 
 impl Contributions {
@@ -28,8 +28,8 @@ impl Contributions {
         Self { each: vec![0.0; starts[starts.len() - 1]], starts, parallel }
     }
 
-    /// Asks every element, for derivatives too or not; in parallel where there are many. The order in which they answer changes
-    /// nothing.
+    /// Asks every element, with or without derivatives, in parallel if there are many. The result does not depend on the order of the
+    /// answers.
     pub(crate) fn ask(&mut self, assembly: &Assembly, derivatives: bool, ask: &Ask<'_>) {
         let elements = assembly.placed();
         let parallel = elements.len() >= self.parallel && rayon::current_num_threads() > 1;
@@ -116,7 +116,7 @@ fn blank(assembly: &Assembly, pattern: &Pattern, values: &mut [f64]) {
     }
 }
 
-/// So many elements are not divided further.
+/// Largest number of elements that a single task evaluates.
 const PIECE: usize = 512;
 
 fn ask_all(elements: &[PlacedElement], starts: &[usize], out: &mut [f64], ask: (&Ask<'_>, bool), grain: usize) {
@@ -141,7 +141,7 @@ fn ask_all(elements: &[PlacedElement], starts: &[usize], out: &mut [f64], ask: (
     }
 }
 
-/// Coordinates of an element, by `of`, handed on.
+/// Gathers the numbers `of` the coordinates of an element, and calls `then` with them.
 #[inline(always)]
 pub(crate) fn gathered<T>(placed: &PlacedElement, of: impl Fn(usize) -> f64, then: impl FnOnce(&[f64]) -> T) -> T {
     let mut local = [0.0; WIDEST];
@@ -149,7 +149,7 @@ pub(crate) fn gathered<T>(placed: &PlacedElement, of: impl Fn(usize) -> f64, the
     then(&local[..n])
 }
 
-/// The coordinates and velocities of an element, handed on.
+/// Gathers the coordinates and velocities of an element, and calls `then` with them.
 #[inline(always)]
 pub(crate) fn at<T>(placed: &PlacedElement, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
     gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))

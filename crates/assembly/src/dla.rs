@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 
 /// The discrete Lagrange-d'Alembert map of an assembly, with midpoint rules: order 2, self-adjoint.
 ///
-/// The equations are those of the static [`Dla`](dla::Dla), summed over the elements: from `(q0, v0)` the mean velocity `v` of
-/// the step and the multipliers `lambda` with
+/// The equations are the equations of the static [`Dla`](dla::Dla), summed over the elements. From `(q0, v0)` they give the mean
+/// velocity `v` of the step and the multipliers `lambda`:
 ///
 /// ```text
 /// sum_e (L_v(q0, v0) + D1 L_d(q0, q1) + f_d^-) + A(q0)' lambda = 0,      w_d(q0, q1) = 0 or g(q1) = 0,
@@ -23,8 +23,8 @@ use std::f64::consts::PI;
 /// then the velocity at the end by projection, `sum_e L_v(q1, v1) = sum_e (D2 L_d + f_d^+) + A(q1)' mu`, `A(q1) v1 = 0`. Each
 /// Newton iteration is a sparse saddle-point system of `N + M` unknowns; both stages have the same pattern.
 ///
-/// Where a step turns a constraint by more than a radian, or where its iteration does not contract from its start, the solution is
-/// continued from a step of length zero, as by the static method. (The book, (3.1) and (3.2).)
+/// If a step turns a constraint by more than a radian, or its iteration does not contract from its start, the solution is continued from
+/// a step of length zero, as by the static method. (The book, (3.1) and (3.2).)
 pub struct SparseDla {
     equations: AssemblyEquations,
     q0: Vec<f64>,
@@ -35,10 +35,10 @@ pub struct SparseDla {
     p: Vec<f64>,
 }
 
-/// What turns by less than this in a step (rad) is near its start.
+/// A step that turns no constraint by more than this angle (rad) ends near its start.
 const NEAR: f64 = 1.0;
 
-/// With fewer elements, threads cost more than they gain.
+/// Number of elements below which threads cost more than they gain.
 pub(crate) const PARALLEL: usize = 2048;
 
 impl std::fmt::Debug for SparseDla {
@@ -48,10 +48,10 @@ impl std::fmt::Debug for SparseDla {
 }
 
 impl SparseDla {
-    /// The method for that assembly, whose pattern it finds and whose memory it keeps.
+    /// The method for this assembly. It finds the pattern of the matrix and allocates the memory.
     ///
     /// # Errors
-    /// [`AssemblyFault::Factorisation`] where the memory does not suffice.
+    /// [`AssemblyFault::Factorisation`] if the memory does not suffice.
     pub fn new(assembly: &Assembly, solver: Solver) -> Result<Self, StepError> {
         let zeros = || vec![0.0; assembly.coordinates()];
         Ok(Self {
@@ -65,15 +65,15 @@ impl SparseDla {
         })
     }
 
-    /// The same on one thread alone, however many elements there are; the numbers are the same.
+    /// The method on a single thread, with the same results to the last bit.
     #[must_use]
     pub fn on_one_thread(mut self) -> Self {
         self.equations.contributions.parallel = usize::MAX;
         self
     }
 
-    /// The mean velocity of the step, in `v`: from the predictor, or where that may lead to another solution, along the branch that begins with
-    /// a step of length zero.
+    /// Computes the mean velocity of the step, in `v`: from the predictor, or, if that may lead to another solution, along the branch
+    /// that begins with a step of length zero.
     fn increment(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, StepError> {
         predict(state, h, &self.v0, &mut self.v);
         let iterations = self.solve(assembly, (t0, h), state)?;
@@ -98,7 +98,7 @@ impl SparseDla {
         Some(iterations)
     }
 
-    /// The mean velocity of the step that Newton's method finds from `v`, there.
+    /// Solves for the mean velocity of the step by Newton's method, starting from `v`, and writes it to `v`.
     fn solve(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, StepError> {
         let Self { equations, q0, q1, v, p, .. } = self;
         equations.contributions.ask(assembly, true, &|placed, out| {
@@ -167,7 +167,7 @@ impl SparseDla {
         project(equations, (assembly, t0 + h, h), (q1, v), p, v1)
     }
 
-    /// By how much the constraint turns that turns most (rad).
+    /// The largest turn of a constraint in the step (rad).
     fn turn(&self, assembly: &Assembly, (t0, h): (f64, f64)) -> f64 {
         let far = |(v, angle): (&f64, &bool)| *angle && (h * v).abs() > NEAR;
         if !self.v.iter().zip(assembly.angles()).any(far) {
@@ -185,7 +185,7 @@ impl SparseDla {
 
     /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`StepError::Overshoot`].
     fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), StepError> {
-        /// Where the change of the velocity is a smaller part of the velocity (squared), it is round-off.
+        /// If the change of the velocity is a smaller fraction of the velocity (squared), it is round-off.
         const ROUNDING: f64 = 1e-16;
         let mut sums = [0.0; 3];
         for placed in assembly.placed().iter().filter(|placed| placed.element.acts()) {
@@ -211,7 +211,7 @@ impl SparseDla {
 }
 
 impl AssemblyEquations {
-    /// The right side, minus the momenta and the levels; and a part of the matrix.
+    /// Writes the right side (minus the momenta and the levels), and a part of the matrix.
     pub(crate) fn write(&mut self, assembly: &Assembly, part: Option<MatrixPart>, p: &[f64]) {
         let Self { contributions, linear: Linear { pattern, values, right, .. }, .. } = self;
         let n = assembly.coordinates();
@@ -227,8 +227,8 @@ impl AssemblyEquations {
     }
 }
 
-/// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
-/// difference keeps the digits that the coordinates have lost far away.
+/// The coordinates of a joint at the end of a step with the mean velocity `v`. Coordinates with an origin are measured from it, since the
+/// difference keeps digits that the coordinates lose far away.
 fn relative(
     placed: &PlacedElement,
     origins: &[Option<usize>],
@@ -247,8 +247,8 @@ fn relative(
     then(&q1[..origins.len()]);
 }
 
-/// The predictor of the mean velocity: extrapolated from the last steps, or with the acceleration of the last one. `v0` where neither is
-/// known, or where it would change the velocity so much that Newton's method might converge to another solution.
+/// The predictor of the mean velocity: extrapolated from the last steps, or from the acceleration of the last step. It is `v0` if
+/// neither is known, or if the prediction differs from `v0` so much that Newton's method might converge to another solution.
 fn predict(state: &AssemblyState, h: f64, v0: &[f64], v: &mut [f64]) {
     /// The largest change of the velocity by a predictor, relative to the velocity, as in the static method.
     const MOST: f64 = 0.125;

@@ -13,7 +13,7 @@ pub(crate) struct AssemblyEquations {
     pub(crate) settling: AssemblySettling,
 }
 
-/// Where a correction is no more than this part of the one before, the matrix of that is good enough for the next.
+/// If a correction is at most this fraction of the one before, the next iteration keeps the matrix.
 const CHORD: f64 = 1e-3;
 
 impl AssemblyEquations {
@@ -25,8 +25,8 @@ impl AssemblyEquations {
         })
     }
 
-    /// Solves for the unknowns `x`: `evaluate` writes the right side at `x`, and the matrix where it is told so, which it is not
-    /// while the factors of the last one are good enough; `terms` adds the sums of the sizes of the terms of the equations.
+    /// Solves for the unknowns `x`. `evaluate` writes the right side at `x`, and the matrix if its flag says so: factors that are still
+    /// good enough are kept. `terms` adds the sums of the sizes of the terms of the equations.
     pub(crate) fn newton(
         &mut self,
         of: (&Assembly, Stage),

@@ -15,18 +15,18 @@ pub enum Solver {
     /// Dense up to [`Solver::SMALL`] unknowns, sparse beyond.
     #[default]
     Best,
-    /// `faer`'s sparse elimination, by columns and with pivots: along a chain where it is one, else in the order of COLAMD.
+    /// `faer`'s sparse elimination, by columns and with pivots. It follows the order of the assembly if that is a chain, else COLAMD.
     Sparse,
     /// `faer`'s dense elimination with partial pivoting.
     Dense,
 }
 
 impl Solver {
-    /// Up to so many unknowns the dense elimination is no slower.
+    /// Largest number of unknowns for which dense elimination is no slower.
     pub const SMALL: usize = 24;
 }
 
-/// The factorisation of one matrix after the other, all of one pattern: analysed once, refactorised in place.
+/// Factorises matrices of one pattern, one after the other: the pattern is analysed once, and factors are replaced in place.
 pub(crate) struct Factor {
     forward: Vec<u32>,
     inverse: Vec<u32>,
@@ -60,8 +60,8 @@ impl Factor {
         Ok(Self { forward: vec![0; n], inverse: vec![0; n], memory: buffer(scratch, n)?, kind })
     }
 
-    /// Factorises the matrix with these values; returns its smallest pivot relative to the largest entry of its column, or
-    /// zero where none is left.
+    /// Factorises the matrix with these values. Returns its smallest pivot relative to the largest entry of its column, or zero if no
+    /// pivot is left.
     pub(crate) fn factorise(&mut self, pattern: &Pattern, values: &[f64]) -> Result<f64, StepError> {
         let Self { forward, inverse, memory, kind } = self;
         let (n, stack) = (pattern.unknowns(), MemStack::new(memory));
@@ -103,7 +103,7 @@ impl Factor {
         }
     }
 
-    /// Solves with the factors there are, in place.
+    /// Solves in place with the current factors.
     pub(crate) fn solve(&mut self, x: &mut [f64]) {
         let Self { forward, inverse, memory, kind } = self;
         let (n, stack) = (x.len(), MemStack::new(memory));
@@ -121,8 +121,8 @@ impl Factor {
     }
 }
 
-/// The columns along the assembly, where the entries stay near the diagonal there and memory is then read in its order; else
-/// those of COLAMD, which fills in little in trees and what else is sparse (Davis, Gilbert, Larimore and Ng 2004, ACM Trans.
+/// The order of the columns. Columns follow the assembly if the entries then stay near the diagonal, since memory is then read in order.
+/// Otherwise COLAMD orders them, which fills in little in trees and other sparse patterns (Davis, Gilbert, Larimore and Ng 2004, ACM Trans.
 /// Math. Softw. 30, 353-376).
 fn order(pattern: &Pattern) -> Result<Perm<u32>, StepError> {
     const NARROW: f64 = 16.0;

@@ -6,12 +6,12 @@ use crate::{Assembly, AssemblyState, Solver, terms};
 use dla::StepError;
 
 impl Assembly {
-    /// Where the velocity of a state misses the constraints by more than rounding, as where an imposed velocity jumps, the impulse of the
-    /// constraints brings it there: `sum_e L_v(q, v) = p + A' mu`, `A v + b = 0`, as [`dla::onto_constraint`]. Rounding is that of a step of
-    /// length `h` (s).
+    /// Brings the velocity of a state onto the constraints by an impulse of the constraints, if it misses them by more than rounding, as
+    /// after a jump of an imposed velocity: `sum_e L_v(q, v) = p + A' mu`, `A v + b = 0`, as [`dla::onto_constraint`]. Rounding is
+    /// judged for a step of length `h` (s).
     ///
     /// # Errors
-    /// [`StepError`] where the constraints do not determine the velocity, or for want of memory.
+    /// [`StepError`] if the constraints do not determine the velocity, or if the memory does not suffice.
     pub fn onto_constraint(&self, (t, h): (f64, f64), state: &mut AssemblyState) -> Result<(), StepError> {
         let (q, v) = (state.q().to_vec(), state.v().to_vec());
         let (levels, p) = self.levels(t, &q, &v);
@@ -30,7 +30,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// What the constraints miss, `-(A v + b)`, and the momenta with their signs turned.
+    /// The misses of the constraints, `-(A v + b)`, and the momenta with their signs turned.
     pub(crate) fn levels(&self, t: f64, q: &[f64], v: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut contributions = Contributions::of(self, PARALLEL);
         let mut levels = vec![0.0; self.rows()];

@@ -58,12 +58,13 @@ impl Linear {
         }
     }
 
-    /// The largest change of the equations by the last correction, in units of the round-off of their terms: `K d + G' dlambda` and `C d`
-    /// against the sums of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added
-    /// here. Unknowns that a correction was added to have the round-off of that correction too, as in the static methods.
+    /// The largest change of the equations by the last correction, in units of the round-off of their terms. The changes are `K d + G'
+    /// dlambda` and `C d`. The round-off is relative to `sizes`, the sums of the sizes of the terms, to which the terms of the unknowns,
+    /// `|K| |x|`, and the reactions `G' lambda` are added here. The round-off of a correction added to the unknowns counts too, as in
+    /// the static methods.
     ///
-    /// The correction `dlambda` of the multipliers belongs to it: where the round-off of a constraint moves the unknowns, by `g/h` of a
-    /// joint in a short step, the reactions balance that.
+    /// The correction `dlambda` of the multipliers must be included: if the round-off of a constraint moves the unknowns, by `g/h` of a
+    /// joint in a short step, the reactions balance that motion.
     #[cold]
     pub(crate) fn most_roundings(
         &self,

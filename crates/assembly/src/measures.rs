@@ -7,7 +7,7 @@ use dla::{AssemblyFault, NewtonError, NotANumber, StepError};
 use lagrangian::linear::larger;
 
 impl Assembly {
-    /// What each element says, from its coordinates and velocities: `apart` is by how much one is larger than another.
+    /// Evaluates each element at its coordinates and velocities; `apart` is the difference of two coordinates.
     fn say<T>(
         &self,
         (q_of, v_of): (impl Fn(usize) -> f64, impl Fn(usize) -> f64),
@@ -26,7 +26,7 @@ impl Assembly {
         }
     }
 
-    /// What each element says of a state, with all digits of differences.
+    /// Evaluates each element at a state, with all digits of differences.
     fn say_of_state<T>(
         &self,
         state: &AssemblyState,
@@ -36,7 +36,7 @@ impl Assembly {
         self.say((|i| state.q()[i], |i| state.v()[i]), |i, from| state.apart(i, from), of, with);
     }
 
-    /// What each element says of a configuration and a velocity.
+    /// Evaluates each element at a configuration and a velocity.
     fn say_at<T>(
         &self,
         (q, v): (&[f64], &[f64]),
@@ -109,7 +109,7 @@ impl Assembly {
     }
 }
 
-/// Numbers by their place; what a list lacks is not a number.
+/// The numbers of a list by their place; NaN beyond its end.
 fn number_of(x: &[f64]) -> impl Fn(usize) -> f64 {
     |i| x.get(i).copied().unwrap_or(f64::NAN)
 }

@@ -11,7 +11,7 @@ pub trait AssemblyMethod {
     fn step(&mut self, assembly: &Assembly, t: f64, h: f64, state: &mut AssemblyState) -> Result<u32, StepError>;
 }
 
-/// Why a method is refused.
+/// The reason for a refusal.
 static OTHERS: LazyLock<String> = LazyLock::new(|| {
     let able: Vec<&str> = METHODS.iter().filter(|info| info.assemblies).map(|info| info.name).collect();
     let (last, others) = able.split_last().map_or(("none", &[][..]), |(last, others)| (*last, others));

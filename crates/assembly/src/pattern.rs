@@ -14,10 +14,10 @@ pub(crate) struct Pattern {
     pub(crate) symbolic: SymbolicSparseColMat<u32>,
     /// The unknowns along the assembly: each coordinate, and each constraint after the last coordinate that it takes part in.
     pub(crate) along: Vec<u32>,
-    /// For each element after the other: the places of its block, of its `G'`, and of its `C`, each by the rows of the element.
+    /// For each element in turn: the places of its block, of its `G'`, and of its `C`, each by the rows of the element.
     places: Vec<u32>,
     starts: Vec<usize>,
-    /// The places of the diagonal below `C`, which stays zero but where dependent constraints are looked for.
+    /// The places of the diagonal below `C`, which is zero except in a search for dependent constraints.
     pub(crate) regular: Vec<u32>,
 }
 
@@ -63,7 +63,7 @@ impl Pattern {
         Self { symbolic, along: along(assembly), places, starts, regular }
     }
 
-    /// How many numbers the matrix has.
+    /// Number of entries of the matrix.
     pub(crate) fn entries(&self) -> usize {
         self.symbolic.row_idx().len()
     }
@@ -72,7 +72,7 @@ impl Pattern {
         self.symbolic.ncols()
     }
 
-    /// Those of the element, which has so many coordinates and rows.
+    /// The places of an element with `n` coordinates and `m` rows.
     #[inline(always)]
     pub(crate) fn places(&self, element: usize, (n, m): (usize, usize), acts: bool) -> MatrixPlaces<'_> {
         let all = &self.places[self.starts[element]..self.starts[element + 1]];

@@ -19,11 +19,11 @@ pub(crate) struct AssemblySettling {
     pub(crate) near: f64,
 }
 
-/// Linear equations are refined so often where corrections stall above the round-off of the equations.
+/// Number of refinements of a linear solution if corrections stall above the round-off of the equations.
 pub(crate) const REFINEMENTS: u32 = 2;
 
 impl AssemblySettling {
-    /// Arrays for so many unknowns and constraints.
+    /// Arrays for these numbers of unknowns and constraints.
     pub(crate) fn new(unknowns: usize, rows: usize) -> Self {
         Self {
             newton: Newton::default(),

@@ -18,7 +18,7 @@ pub struct AssemblyState {
 }
 
 impl AssemblyState {
-    /// A state at `q` with velocity `v`; numbers that are missing are zero.
+    /// A state at `q` with velocity `v`; missing numbers are zero.
     #[must_use]
     pub fn new(assembly: &Assembly, q: &[f64], v: &[f64]) -> Self {
         let number = |x: &[f64], i: usize| x.get(i).copied().unwrap_or(0.0);
@@ -32,7 +32,7 @@ impl AssemblyState {
         Self { coordinates, q, turns, v }
     }
 
-    /// How many coordinates there are.
+    /// Number of coordinates.
     #[must_use]
     pub fn len(&self) -> usize {
         self.coordinates.len()
@@ -64,13 +64,13 @@ impl AssemblyState {
         &self.v
     }
 
-    /// About the acceleration of a coordinate, where the last step left it.
+    /// The approximate acceleration of a coordinate, if the last step left it.
     #[inline(always)]
     pub(crate) fn acceleration(&self, i: usize) -> Option<f64> {
         self.coordinates[i].acceleration().map(|[a]| a)
     }
 
-    /// The increment of a coordinate in a step of length `h`, extrapolated from the last ones where these were as long.
+    /// The increment of a coordinate in a step of length `h` (s), extrapolated from the last steps; `None` if they had other lengths.
     #[inline(always)]
     pub(crate) fn expected(&self, i: usize, h: f64) -> Option<f64> {
         self.coordinates[i].expected(h).map(|[dq]| dq)
@@ -88,20 +88,20 @@ impl AssemblyState {
         self.coordinates[i].moved_since(&before.coordinates[i])[0]
     }
 
-    /// By how much a coordinate is larger than another, with the digits that the sums keep.
+    /// The difference between a coordinate and another, `i` less `from`, with the digits that the sums keep.
     #[inline(always)]
     pub(crate) fn apart(&self, i: usize, from: usize) -> f64 {
         self.coordinates[i].moved_since(&self.coordinates[from])[0]
     }
 
-    /// Moves a coordinate by a step of length `h`, and leaves about its acceleration to the next step.
+    /// Moves a coordinate by a step of length `h` (s), and stores its approximate acceleration for the next step.
     #[inline(always)]
     pub(crate) fn advance(&mut self, h: f64, i: usize, increment: f64, v: f64, acceleration: f64) {
         self.coordinates[i].advance_with_acceleration(h, &[increment], [v], [acceleration]);
         self.show(i);
     }
 
-    /// Gives a coordinate another velocity where it is: what the last steps left to the next holds no more.
+    /// Changes the velocity of a coordinate in place, and discards the memory of earlier steps, which no longer holds.
     pub(crate) fn set_velocity(&mut self, i: usize, v: f64) {
         self.coordinates[i].advance(&[0.0], [v], None);
         self.show(i);
@@ -113,13 +113,13 @@ impl AssemblyState {
         (self.q[i], self.turns[i], self.v[i]) = (one.q()[0], one.turns()[0], one.v()[0]);
     }
 
-    /// The same place with the opposite velocity.
+    /// The state with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self::of(self.coordinates.iter().map(dla::State::reversed).collect())
     }
 
-    /// Becomes the other state, without a new allocation where both are of one assembly.
+    /// Copies the other state. Nothing is allocated if both belong to one assembly.
     pub fn copy_from(&mut self, other: &Self) {
         self.coordinates.clone_from(&other.coordinates);
         self.q.clone_from(&other.q);
@@ -127,7 +127,7 @@ impl AssemblyState {
         self.v.clone_from(&other.v);
     }
 
-    /// The largest distance of a coordinate from that of another state (m or rad).
+    /// The largest distance between a coordinate of this state and the same coordinate of another (m or rad).
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let pairs = self.coordinates.iter().zip(&other.coordinates);

@@ -24,7 +24,7 @@ impl<'a> From<&'a Assembly> for AssemblySubject<'a> {
 }
 
 impl AssemblySubject<'_> {
-    /// Numbers for all coordinates, of which a list that is too short gives the first.
+    /// The numbers of a list for all coordinates; NaN beyond its end.
     fn all(&self, x: &[f64]) -> Vec<f64> {
         let mut all = x.to_vec();
         all.resize(self.assembly.coordinates(), f64::NAN);
@@ -38,7 +38,7 @@ impl std::fmt::Debug for AssemblySubject<'_> {
     }
 }
 
-/// Of what an assembly is not asked.
+/// The refusal of the derivatives of steps.
 const NO_DERIVATIVES: SensitivityError =
     SensitivityError::Unsupported { reason: "the steps of trains and other assemblies have no derivatives" };
 
@@ -100,7 +100,7 @@ impl Mechanism for AssemblySubject<'_> {
         self.assembly.largest_residual(t, q, v)
     }
 
-    /// The equations of a step meet it as they do the joints: it is not measured.
+    /// The residual is not measured: the equations of a step meet the constraint as they do the joints.
     fn largest_step_residual(&self, _rules: &Rules, _time: (f64, f64), _q: &[f64], _v: &[f64]) -> f64 {
         f64::NAN
     }
@@ -189,14 +189,14 @@ impl Mechanism for AssemblySubject<'_> {
 }
 
 impl Assembly {
-    /// The state that is one of this assembly.
+    /// The state of this assembly.
     fn own<'s>(&self, state: &'s mut AnyState) -> Result<&'s mut AssemblyState, StepError> {
         let own = state.held_mut().filter(|state: &&mut AssemblyState| state.len() == self.coordinates());
         own.ok_or(StepError::OTHER_SHAPE)
     }
 }
 
-/// A method on an assembly; one that could not be made fails in its first step.
+/// A method on an assembly. A method that could not be made fails in its first step.
 struct AssemblyIntegrator<'a> {
     assembly: &'a Assembly,
     method: Result<Box<dyn AssemblyMethod>, StepError>,

@@ -6,20 +6,20 @@ use crate::motion::ElementMotion;
 use dla::{Hermite, Place};
 use lagrangian::quadrature::gauss_legendre;
 
-/// What integrates the work done on an assembly over a step.
+/// Integrates the work done on an assembly over a step.
 ///
-/// It is that of [`dla::Work`], summed over the elements: the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along
-/// the polynomial of degree five that has the positions, velocities and accelerations of both ends of the step, which is of order 6.
-/// A step whose forces and moving constraints have no power costs no acceleration.
+/// As in [`dla::Work`], summed over the elements: the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along the
+/// polynomial of degree five through the positions, velocities and accelerations at both ends of the step, which has order 6. A step whose
+/// forces and moving constraints have no power needs no acceleration.
 pub(crate) struct StepWork {
     nodes: [f64; 4],
     weights: [f64; 4],
-    /// What finds accelerations, where some were needed; `Err` where the memory did not suffice.
+    /// The solver for accelerations, made when first needed; `Err` if the memory did not suffice.
     motion: Option<Result<ElementMotion, ()>>,
     ends: [WorkEnd; 2],
     q: Vec<f64>,
     v: Vec<f64>,
-    /// The work between these ends (J), where it is known: several observers ask for the same.
+    /// The work between these ends (J), if it is known: several observers ask for the work of one step.
     known: Option<f64>,
 }
 
@@ -37,7 +37,7 @@ impl WorkEnd {
         self.t.to_bits() == t.to_bits() && self.q == q && self.v == v
     }
 
-    /// Of so many coordinates.
+    /// Copies a place of an assembly with this number of coordinates.
     fn see(&mut self, (t, q, v): Place<'_>, all: usize) {
         self.t = t;
         for (own, x) in [(&mut self.q, q), (&mut self.v, v)] {
@@ -57,7 +57,7 @@ impl Default for StepWork {
 }
 
 impl StepWork {
-    /// The work of a step from one place to another (J). It is not a number where the accelerations are not determined.
+    /// The work of a step from one place to another (J). The work is NaN if the accelerations are not determined.
     pub(crate) fn between(&mut self, assembly: &Assembly, from: Place<'_>, to: Place<'_>) -> f64 {
         let [first, last] = &mut self.ends;
         if let Some(known) = self.known.filter(|_| first.is(from) && last.is(to)) {
@@ -104,7 +104,7 @@ impl StepWork {
         h * sum
     }
 
-    /// Whether forces or time have power at an end of the step, or at a node on the straight line between them.
+    /// Whether forces or explicit time have power at an end of the step, or at a node on the straight line between the ends.
     fn is_powered(&mut self, assembly: &Assembly, t0: f64, h: f64) -> bool {
         let [first, last] = &self.ends;
         [0.0, 1.0].into_iter().chain(self.nodes).any(|c| {

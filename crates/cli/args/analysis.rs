@@ -1,4 +1,4 @@
-//! What a motion is like: `noslip equilibria`, `phase`, `lyapunov` and `section`.
+//! Arguments of the analyses of motions: `noslip equilibria`, `phase`, `lyapunov` and `section`.
 
 use super::scene::SceneArguments;
 use super::values::{count, not_negative, number};

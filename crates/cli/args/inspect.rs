@@ -1,4 +1,4 @@
-//! What a scene says, and what there is: `noslip check`, `equations`, `list` and `new`.
+//! Arguments of commands that describe scenes and list names: `noslip check`, `equations`, `list` and `new`.
 
 use super::scene::Settings;
 use super::values::scene_path;

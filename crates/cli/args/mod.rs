@@ -21,7 +21,7 @@ pub(crate) use values::Size;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
-/// What the exit codes say, at the end of the help.
+/// The meaning of the exit codes, at the end of the help.
 const EXIT_CODES: &str = "Exit codes:
   0    done
   1    the computation failed, or its result could not be written; the part that was computed is shown

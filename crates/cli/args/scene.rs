@@ -1,10 +1,10 @@
-//! The scene of a command, and what is set in its place.
+//! The scene argument of a command, and the options that override it.
 
 use super::values::{number, scene_path};
 use clap::Args;
 use scene::Setting;
 
-/// Values in place of those of the scene.
+/// Settings that override values of the scene.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Settings {
     /// Set a dotted key of the scene, for example sleigh.offset=0.3 or effects.0.stiffness=[1, 2]; can be repeated

@@ -1,4 +1,4 @@
-//! Values of arguments, and what is said of a wrong one.
+//! Parsers of argument values, with their error messages.
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use std::str::FromStr;
@@ -35,7 +35,7 @@ pub(super) fn count(text: &str) -> Result<u64, &'static str> {
     count.ok_or("accepted is a whole number of 1 or more")
 }
 
-/// A step is looked at in so many parts at most, each of which is a step of the method.
+/// Maximum of `--event-samples`: parts of a step in which events are searched. Each part costs a step of the method.
 const MOST_SAMPLES: u32 = 10_000;
 
 pub(super) fn event_samples(text: &str) -> Result<u32, String> {

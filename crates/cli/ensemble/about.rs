@@ -21,7 +21,7 @@ const LARGEST: u64 = 1 << 26;
 const OFTEN: Duration = Duration::from_millis(10);
 const PATIENCE: u32 = 500;
 
-/// What is told of a sweep, with its members or with their summary: all that a result needs beside its rows.
+/// The description of a sweep, beside its members or their summary: all that a result needs besides its rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct About {
     /// The first line of its files of rows: what tells it from other sweeps and other versions of the program.
@@ -40,7 +40,7 @@ pub(super) struct About {
     pub(super) step: f64,
     /// The duration (s).
     pub(super) duration: f64,
-    /// What varies.
+    /// The keys that vary.
     pub(super) keys: Vec<String>,
     pub(super) members: u64,
     /// Name, unit and whether it has whole numbers, of every column.
@@ -49,7 +49,7 @@ pub(super) struct About {
 }
 
 impl About {
-    /// That sweep, from a file of that name.
+    /// The description of a sweep from the file `file`.
     pub(super) fn new(file: &str, sweep: &Sweep, summed: &Summed, identity: &str) -> Self {
         let (scene, run) = (&sweep.scene, sweep.scene.run());
         let mut notes = json!({
@@ -84,7 +84,7 @@ impl About {
         self.columns.iter().map(|(name, unit, whole)| Column { whole: *whole, ..Column::new(name, unit) }).collect()
     }
 
-    /// What made a result: the command that makes it at once, the sweep and its scene; and its columns, of which the last tells the
+    /// The metadata of a result: the command that makes it at once, the sweep and its scene; and its columns, of which the last tells the
     /// members that failed.
     pub(super) fn metadata(&self, out: &Path, format: Format) -> String {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
@@ -94,7 +94,7 @@ impl About {
         provenance.document(&name, self.columns().iter().map(DescribedColumn::from).chain([last]))
     }
 
-    /// Reads it from a file beside parts; none where the file is another one, or damaged.
+    /// Reads it from a file beside parts; `None` if the file is another one, or damaged.
     pub(super) fn read(path: &Path) -> Option<Self> {
         let text = read_text(path, LARGEST).ok()?;
         let about: Self = serde_json::from_str(&text).ok()?;

@@ -2,8 +2,8 @@ use super::members::MemberRow;
 use crc32fast::Hasher;
 use std::fmt::Write;
 
-/// How a row is a line of the spool: a checksum, the number of the member, its numbers, which read back as the same ones, and the
-/// error in quotes, if it has one. The checksum begins with the identity of the sweep, so that a line of another sweep is none of this one.
+/// Format of a spool line: checksum, member number, numbers that read back exactly, and the error in quotes if there is one. The checksum
+/// is seeded with the identity of the sweep, so that a line of another sweep does not match.
 #[derive(Debug, Clone)]
 pub(super) struct Lines {
     seed: Hasher,
@@ -17,11 +17,11 @@ pub(super) enum Damage {
     Cut,
     /// The first line is not the identity of the sweep.
     Header,
-    /// The checksum is not that of the text.
+    /// The checksum does not match the text.
     Checksum,
-    /// A row of this sweep, of another member.
+    /// The row belongs to another member of this sweep.
     Member(String),
-    /// Another count of numbers.
+    /// The row has the wrong count of numbers.
     Numbers { found: usize, expected: usize },
 }
 
@@ -38,7 +38,7 @@ impl std::fmt::Display for Damage {
 }
 
 impl Lines {
-    /// The lines of the sweep of that identity, whose rows have so many numbers, that of the member included.
+    /// Lines of the sweep `identity`, whose rows have `numbers` numbers, the member number included.
     pub(super) fn new(identity: &str, numbers: usize) -> Self {
         let mut seed = Hasher::new();
         seed.update(identity.as_bytes());
@@ -66,7 +66,7 @@ impl Lines {
         format!("{} {text}\n", self.checksum(&text))
     }
 
-    /// The text of a line that must be the row of a member: what the `.csv` has.
+    /// Checks that a line is the row of `member`, and returns its text as the `.csv` has it.
     pub(super) fn row<'l>(&self, line: &'l [u8], member: u64) -> Result<&'l str, Damage> {
         let line = line.strip_suffix(b"\n").ok_or(Damage::Cut)?;
         let (sum, text) = std::str::from_utf8(line).ok().and_then(|l| l.split_once(' ')).ok_or(Damage::Checksum)?;
@@ -98,7 +98,7 @@ pub(super) fn parsed(text: &str) -> (Vec<f64>, Option<String>) {
     (values, error.map(|error| error.strip_suffix('"').unwrap_or(error).replace("\"\"", "\"")))
 }
 
-/// All numbers of a row, that of the member first, and last whether it has an error.
+/// All numbers of a row: the member number, its values, and last 1 if the member failed, else 0.
 pub(super) fn numbers_of(text: &str) -> Vec<f64> {
     let (numbers, error) = numbers(text);
     let failed = f64::from(u8::from(error.is_some()));

@@ -7,11 +7,11 @@ use scene::{AnyScene, Column, Quantity, RunSettings, Sweep};
 
 use crate::error::CliError;
 
-/// What is summed up of the members of a sweep: the quantities that tell a state.
+/// The quantities of the state that each member's row summarises.
 #[derive(Debug)]
 pub(super) struct Summed {
     state: Vec<Quantity>,
-    /// Those that have extremes that mean anything: angles have none.
+    /// Indices of the quantities whose extremes are recorded; angles have none.
     extremes: Vec<usize>,
     constraint: &'static str,
 }
@@ -27,7 +27,7 @@ impl Summed {
         Ok(Self { state, extremes, constraint })
     }
 
-    /// The columns after those of the keys.
+    /// The columns that follow the keys of the sweep.
     pub(super) fn columns(&self) -> Vec<Column> {
         let of = |quantity: &Quantity, end: &str| Column::new(format!("{}{end}", quantity.name), quantity.unit.clone());
         let state = self.state.iter().map(|quantity| of(quantity, ""));
@@ -37,7 +37,7 @@ impl Summed {
         std::iter::once(Column::new("t", "s")).chain(state).chain(extremes).chain(last).collect()
     }
 
-    /// The numbers of these columns; NaN where there is no summary.
+    /// The numbers of these columns; all NaN if there is no summary.
     fn numbers(&self, summary: Option<&Summary>) -> Vec<f64> {
         let Some(Summary { t, end, low, high, energy, energy_deviation, constraint }) = summary else {
             return vec![f64::NAN; 4 + self.state.len() + 2 * self.extremes.len()];
@@ -51,7 +51,7 @@ impl Summed {
 /// A member that was computed.
 pub(super) struct MemberRow {
     pub(super) member: u64,
-    /// Keys, columns, and the exponent where it is wanted; NaN where there is none.
+    /// Keys, columns, and the exponent if requested; a missing number is NaN.
     pub(super) values: Vec<f64>,
     /// Why it ended early, if it did.
     pub(super) error: Option<String>,
@@ -60,7 +60,7 @@ pub(super) struct MemberRow {
 /// The members of a sweep by one method.
 pub(super) struct Members<'a> {
     pub(super) sweep: &'a Sweep,
-    /// That of all members, unless the sweep varies it.
+    /// The method of all members, unless the sweep varies the run settings.
     pub(super) method: Method,
     pub(super) names: &'a [&'static str],
     pub(super) summed: &'a Summed,
@@ -77,7 +77,7 @@ impl Members<'_> {
         MemberRow { member, values, error }
     }
 
-    /// Its numbers, as far as it comes.
+    /// Computes the summary and the exponent, as far as the member comes.
     fn compute(&self, member: u64, summary: &mut Option<Summary>, exponent: &mut f64) -> Result<(), String> {
         let scene = self.sweep.member(member, self.names).map_err(|error| error.to_string())?;
         let (method, schedule) = &self.run_of(&scene)?;
@@ -120,7 +120,7 @@ fn largest_exponent(
     found.failure.map_or_else(|| Ok(found.exponents[0]), |failure| Err(failure.to_string()))
 }
 
-/// The method of a member of a sweep that is run so.
+/// The method of a member with these run settings.
 pub(super) fn method_of(sweep: &Sweep, run: &RunSettings) -> Result<Method, CliError> {
     let method = inspect::method(run)?;
     if sweep.exponent {

@@ -133,12 +133,12 @@ fn compute(
     }
 }
 
-/// What tells a sweep from others: all that its rows depend on.
+/// Identifies a sweep, by all that its rows depend on.
 fn contents(sweep: &Sweep) -> String {
     Checkpoint::fingerprint(&sweep.contents())
 }
 
-/// What tells its rows from others, to the last bit.
+/// Identifies its rows, to the last bit.
 fn identity(sweep: &Sweep) -> String {
     let (version, instructions) = (program::version(), program::instructions());
     format!("noslip ensemble {version} on {instructions}, rows with checksums {}", contents(sweep))

@@ -18,7 +18,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What makes a part that is not as it was written.
+/// The advice for a part that is not as it was written.
 const ADVICE: &str = "`noslip ensemble SWEEP --out DIR --part I/N` computes the part again";
 
 /// A file of rows of some members.
@@ -132,7 +132,7 @@ fn is_whole(part: &SweepPart, of: (&Lines, &str), totals: &mut EnsembleTotals) -
 /// # Errors
 /// The members that are missing.
 pub(super) fn chain(mut parts: Vec<SweepPart>, members: u64) -> Result<Vec<SweepPart>, Range<u64>> {
-    // From the end: a part is of use where another one goes on from its end.
+    // From the end: a part is of use if another one goes on from its end.
     parts.sort_by_key(|part| (std::cmp::Reverse(part.members.start), part.members.end));
     let mut onward: std::collections::BTreeMap<u64, SweepPart> = std::collections::BTreeMap::new();
     for part in &parts {
@@ -195,7 +195,7 @@ pub(super) fn found(folder: &Path) -> Result<(About, Vec<SweepPart>), CliError> 
     Ok((sweep.clone(), names.iter().filter_map(part).collect()))
 }
 
-/// What a folder says of the sweep whose files begin so.
+/// The description of a sweep in a folder, whose files begin with `name`.
 fn about(folder: &Path, name: &str) -> Result<About, CliError> {
     let path = folder.join(format!("{name}.json"));
     let known = About::read(&path).filter(|about| stem(&about.identity) == name);

@@ -18,10 +18,10 @@ pub struct SweepPlan {
     pub parts: Vec<String>,
 }
 
-/// The parts of the sweep in that file, `parts` of them; fewer where there are not so many members.
+/// Splits the sweep in the file `sweep` into `parts` parts, or one part per member if there are fewer members.
 ///
 /// # Errors
-/// [`Refusal`] with the first thing that is wrong with the sweep, or where no parts are asked for.
+/// [`Refusal`] with the first error of the sweep, or if `parts` is zero.
 pub fn plan(sweep: &str, parts: u64) -> Result<SweepPlan, Refusal> {
     Ok(made(sweep, parts)?)
 }

@@ -10,7 +10,7 @@ use scene::Column;
 use std::io::{Error, Seek, Write};
 use std::path::Path;
 
-/// The columns of a result, and what it says of itself.
+/// The columns, row count and metadata of a result.
 pub(super) struct Shape<'a> {
     pub(super) format: Format,
     pub(super) columns: &'a [Column],
@@ -19,8 +19,8 @@ pub(super) struct Shape<'a> {
 }
 
 impl Shape<'_> {
-    /// Writes a result, whole or not at all, with what made it beside a text, which comes first: then no rows are without it. `rows` begins to
-    /// read them again. The result that the same command left when it was ended is as good.
+    /// Writes a result, whole or not at all. A text format gets its metadata file first, so that rows never lack it. `rows` begins to read
+    /// the rows again. An identical result of an interrupted command is accepted.
     pub(super) fn write<'a>(
         &self,
         out: &Path,
@@ -85,7 +85,7 @@ fn content<'a>(
     }
 }
 
-/// The columns of a file of numbers alone: one more says which members failed, by 0 or 1.
+/// The columns of a numeric file: the last one is 1 if the member failed, else 0.
 fn with_failed(columns: &[Column]) -> Vec<Column> {
     columns.iter().cloned().chain([failed()]).collect()
 }
@@ -95,7 +95,7 @@ pub(super) fn failed() -> Column {
     Column::whole("failed")
 }
 
-/// A row as an object; its member is a whole number, and what is not finite is null.
+/// A row as a JSON object. The member is a whole number; a value that is not finite is null.
 fn object(columns: &[Column], row: &str) -> serde_json::Value {
     let (values, error) = lines::parsed(row);
     let member: Option<u64> = row.split(',').next().and_then(|number| number.parse().ok());

@@ -32,7 +32,8 @@ struct Reading {
 }
 
 impl<'a> SpoolRows<'a> {
-    /// The rows of those members, whose lines and whose first line are these; `advice` says what to do where they are not there.
+    /// The rows of the members `members`, in the lines of `lines` after the first line `header`; `advice` says what to do if they are
+    /// missing.
     pub(super) fn new(
         (lines, header): (&'a Lines, &'a str),
         sources: Vec<Source>,
@@ -43,7 +44,7 @@ impl<'a> SpoolRows<'a> {
         Self { lines, header, sources: sources.into_iter(), reading: None, line: Vec::new(), next, end, advice }
     }
 
-    /// The text of the next row; none after the last one.
+    /// The text of the next row; `None` after the last one.
     pub(super) fn next(&mut self) -> Result<Option<&str>, Error> {
         loop {
             let Some(reading) = &mut self.reading else {

@@ -9,12 +9,12 @@ pub(crate) struct Share {
 }
 
 impl Share {
-    /// That part, from 1 on, of so many.
+    /// Part `number`, counted from 1, of `of` parts.
     pub(super) fn new(number: u64, of: u64) -> Self {
         Self { number, of }
     }
 
-    /// Its members, of so many.
+    /// The members of this part, in a sweep of `count` members.
     pub(super) fn members(self, count: u64) -> Range<u64> {
         let until = |part: u64| (u128::from(count) * u128::from(part) / u128::from(self.of)) as u64;
         until(self.number - 1)..until(self.number)

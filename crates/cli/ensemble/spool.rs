@@ -9,31 +9,31 @@ use std::io::{BufRead, BufReader, Error, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::Path;
 
-/// Rows on their way: a file beside the result, to which every row is added when its member is done, and from which the result is made
-/// at the end. So the memory holds few of them, and what an interrupted run has done is not lost.
+/// A file beside the result, to which every row is added when its member is done; the result is made from it at the end. So memory holds
+/// few rows, and an interrupted run keeps its finished rows.
 pub(super) struct Spool {
     part: PartFile,
     lines: Lines,
-    /// The first member of which it has the row.
+    /// The first member of the spool.
     first: u64,
-    /// The first member of which it does not have the row yet.
+    /// The first member whose row is still missing.
     next: u64,
-    /// Its first line.
+    /// The first line of the file.
     header: String,
 }
 
-/// What is to be done with what is there.
+/// How to treat the rows of an interrupted run.
 #[derive(Clone, Copy)]
 pub(super) struct SpoolRequest {
-    /// Go on from the rows of an interrupted run.
+    /// Continue from them.
     pub(super) resume: bool,
-    /// Overwrite them, and the result.
+    /// Overwrite them and the result.
     pub(super) force: bool,
 }
 
 impl Spool {
-    /// The spool of some members of a sweep with that identity, whose rows have so many numbers; `seen` receives the values and the
-    /// error of every row that is taken over.
+    /// Opens the spool for `members` of the sweep `identity`, whose rows have `numbers` numbers. `seen` receives the values and the error
+    /// of every row taken over.
     pub(super) fn open(
         out: &Path,
         (identity, members, numbers): (&str, Range<u64>, usize),
@@ -42,7 +42,7 @@ impl Spool {
     ) -> Result<Self, CliError> {
         let part = PartFile::lock(out)?;
         let found = part.len()?;
-        // Whoever had the lock may have written the result meanwhile. Of one who was ended before the spool was removed, both are there.
+        // Another process may have written the result meanwhile. If it was ended before it removed the spool, both files exist.
         if let Err(error) = check_file(out, asked.force || asked.resume && found > 0) {
             if found == 0 {
                 part.remove();
@@ -68,7 +68,7 @@ impl Spool {
         Ok(spool)
     }
 
-    /// The first member of which it does not have the row yet.
+    /// The first member whose row is still missing.
     pub(super) fn next(&self) -> u64 {
         self.next
     }
@@ -78,7 +78,7 @@ impl Spool {
         &self.lines
     }
 
-    /// Whether there is only a beginning of the first line: a process was ended while it wrote that.
+    /// Whether the file holds only the beginning of the header: a process was ended while it wrote the header.
     fn has_begun_only(&self, size: u64) -> Result<bool, CliError> {
         let mut text = Vec::new();
         let mut reader = self.reader().map_err(|source| self.part.failed(source))?;
@@ -99,7 +99,7 @@ impl Spool {
         Ok(BufReader::with_capacity(1 << 16, file))
     }
 
-    /// Keeps the rows that are whole and in order; the first that is not, and all after it, are made again.
+    /// Keeps the leading rows that are whole and in order; all later rows are computed again.
     fn take_over(&mut self, members: u64, mut seen: impl FnMut(&[f64], Option<&str>)) -> Result<(), CliError> {
         let unreadable = |source| CliError::Read { path: self.part.path().to_owned(), source };
         let (mut reader, mut line) = (self.reader().map_err(unreadable)?, Vec::new());
@@ -141,7 +141,7 @@ impl Spool {
         Ok(())
     }
 
-    /// Adds so many rows, as [`Lines::line`] made them; they are with the operating system when this returns.
+    /// Appends `rows` rows that [`Lines::line`] formatted; the operating system has them on return.
     pub(super) fn add(&mut self, text: &str, rows: u64) -> Result<(), CliError> {
         self.next += rows;
         let mut file = self.part.file();
@@ -166,7 +166,7 @@ impl Spool {
         self.part.becomes(out, true)
     }
 
-    /// A reader of the rows, which fails where they are not those of the members in order.
+    /// A reader of the rows; it fails if the rows do not belong to the members in order.
     fn whole_rows(&self, members: u64) -> Result<SpoolRows<'_>, Error> {
         let source = Source::Open(self.part.path().to_owned(), self.part.file().try_clone()?);
         Ok(SpoolRows::new(

@@ -5,7 +5,7 @@ use scene::Column;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What all members came to.
+/// The totals over all members.
 pub(super) struct EnsembleTotals {
     keys: usize,
     /// The number of the first member.
@@ -51,7 +51,7 @@ impl Extent {
 }
 
 impl EnsembleTotals {
-    /// Of members of a sweep from that one on.
+    /// The totals of a sweep from the member `begin` on.
     pub(super) fn new(of: &About, begin: u64) -> Self {
         let keys = of.keys.len();
         // After the number of the member and its keys.
@@ -85,7 +85,7 @@ impl EnsembleTotals {
         self.count
     }
 
-    /// What failed, told in one line.
+    /// The failures, in one line; `None` if no member failed.
     pub(super) fn failures(&self) -> Option<String> {
         let first = self.first.as_ref()?;
         Some(format!("{} of {} members failed; the first failure: {first}", self.failed, self.count))
@@ -135,7 +135,7 @@ impl EnsembleTotals {
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             lines.push((name.clone(), format!("from {low} to {high}{unit}, mean {mean}")));
         }
-        // Of what was only put together there is no time.
+        // Results that were only put together have no time.
         if computed > 0 {
             let each = 1e6 * seconds / computed as f64;
             lines.push(("time".to_owned(), format!("{seconds:.3e} s, {each:.2} us a member")));

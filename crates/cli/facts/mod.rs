@@ -1,4 +1,4 @@
-//! What scenes are, for a person: names and values.
+//! Descriptions of scenes for a person: names and values.
 
 mod sleigh;
 mod text;
@@ -7,7 +7,7 @@ use crate::error::CliError;
 use crate::notes;
 use scene::AnyScene;
 
-/// What a scene says.
+/// The description of a scene.
 pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
     Ok(match scene {
         AnyScene::Sleigh(scene) => sleigh::of(scene)?,

@@ -1,7 +1,7 @@
 use crate::table::{counted, number};
 use scene::{Quantity, TextModel, TextScene};
 
-/// What a scene says, for a person: names and values.
+/// The description of a scene for a person: names and values.
 pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
     let (model, start, run, schedule) = (&scene.model, &scene.start, &scene.run, scene.schedule());
     let geometry = model.geometry(start);

@@ -20,12 +20,12 @@ use words::Answers;
 /// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
 /// can lose some.
 const SCENE: &str = "egg-crate";
-/// Of each way to make a method: the discrete principle, its composition, collocation, energy, and the classical one.
+/// One method of each kind: the discrete principle, its composition, collocation, energy, and the classical one.
 const METHODS: [&str; 5] = ["dla", "dla4", "gauss16", "energy4", "rk4"];
 /// A step (s) at which the methods differ, and a run (s) that is long enough to see a drift.
 const STEP: f64 = 0.1;
 const DURATION: f64 = 300.0;
-/// What accuracy costs is measured over so much of the motion (s), by runs of so much time at most (s).
+/// Duration of the motion over which the cost of accuracy is measured (s), and maximum time of its runs (s).
 const MOTION: f64 = 20.0;
 const LONGEST: f64 = 0.01;
 /// The errors whose price is told (m or rad).

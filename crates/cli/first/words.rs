@@ -1,4 +1,4 @@
-//! What the first screen says of its numbers.
+//! The words of the first screen on its numbers.
 
 use crate::row_verdict::{Energy, slips};
 use crate::table::{aligned, number};
@@ -9,7 +9,7 @@ use serde_json::Value;
 /// The columns, each a question.
 pub(crate) const COLUMNS: [&str; 5] = ["method", "does it slip?", "does its energy drift?", "error at the end", "time"];
 
-/// What the columns mean.
+/// The meaning of the columns.
 const MEANINGS: [&str; 5] = [
     "The integrator, by the name that commands and files use; `noslip list methods` says what each is. All methods \
         start from the same state and make the same steps.",
@@ -36,7 +36,7 @@ a scene of your own              noslip new my.toml; noslip compare my.toml
 /// No line is longer.
 const WIDTH: usize = 80;
 
-/// What a run does, as the columns ask.
+/// The answers of a run to the columns' questions.
 #[derive(Debug)]
 pub(crate) struct Answers {
     method: String,
@@ -53,7 +53,7 @@ pub(crate) struct Answers {
 }
 
 impl Answers {
-    /// Of a row of `compare --json`.
+    /// The answers from a row of `compare --json`.
     pub(crate) fn of(row: &Value) -> Self {
         let slip = row["constraint"]["max"].as_f64().unwrap_or(f64::NAN);
         let better = row["better_than"].as_array().and_then(|all| all.first());
@@ -93,13 +93,13 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// What is compared.
+/// The heading: the scene, the duration and the step.
 pub(crate) fn heading(scene: &AnyScene) -> String {
     let run = scene.run();
     format!("{}, {} s in steps of {} s", scene.title(), number(run.duration), number(run.step))
 }
 
-/// Who holds the constraint, and who drifts, how fast.
+/// The sentences on the methods that hold the constraint, and on drifts and their speed.
 pub(crate) fn sentences(all: &[Answers]) -> Vec<String> {
     let made: Vec<&Answers> = all.iter().filter(|one| one.failure.is_none()).collect();
     vec![constraint(&made), energy(&made)]
@@ -150,7 +150,7 @@ fn energy(made: &[&Answers]) -> String {
     sentence(parts.into_iter())
 }
 
-/// Who is cheapest, at each of the errors.
+/// The cheapest method at each of the errors.
 pub(crate) fn prices(prices: &[Cheapest], motion: f64) -> String {
     let told = prices.iter().map(|price| {
         let error = format!("{:e}", price.error);
@@ -174,7 +174,7 @@ pub(crate) fn notes() -> Vec<(String, String)> {
     COLUMNS.iter().zip(MEANINGS).map(|(column, meaning)| ((*column).to_owned(), meaning.to_owned())).collect()
 }
 
-/// The same for the terminal.
+/// The meaning of the columns for the terminal.
 pub(crate) fn explanation() -> String {
     let one = |(column, meaning): (&&str, &str)| {
         let lines = wrapped_to(meaning, WIDTH - 4);
@@ -202,7 +202,7 @@ fn wrapped_to(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Parts of a sentence, with its capital letter only where a word begins it: names of methods are small.
+/// Joins parts to a sentence, with a capital letter only if a word begins it: names of methods are small.
 fn sentence(parts: impl Iterator<Item = String>) -> String {
     let text = parts.collect::<Vec<_>>().join("; ");
     let capital = ["the ", "an "].iter().any(|word| text.starts_with(word));

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// The scene of every case that brings none of its own.
+/// The scene of every case without a scene of its own.
 pub(super) const SLEIGH: &str = include_str!("cases/sleigh.toml");
 
 const FILES: [&str; 7] = [
@@ -55,7 +55,7 @@ pub(super) struct HardCase {
     claim: Claim,
     #[serde(default)]
     refusable: bool,
-    /// What there is of every run; its `methods` say for whom there is a row.
+    /// The settings that all runs share; its `methods` say which methods have a row.
     #[serde(flatten)]
     pub(super) shared: Run,
     #[serde(default)]
@@ -77,28 +77,28 @@ enum Claimed {
     Stiffness,
 }
 
-/// A run; what it has not is that of its case.
+/// A run. A field that is not given takes the value of its case.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Run {
     pub(super) label: String,
-    /// Who makes it: all where it is empty.
+    /// Methods that make the run; empty for all.
     pub(super) methods: Vec<String>,
-    /// A system of text, or more of the scene of the sleigh.
+    /// A system of text, or an addition to the scene of the sleigh.
     pub(super) scene: String,
-    /// Settings as on the command line, after those of the case.
+    /// Settings as on the command line, applied after the settings of the case.
     pub(super) set: Vec<String>,
-    /// Speed and spin at the start, where no scene may have them.
+    /// Speed (m/s) and spin (rad/s) at the start, for values that a scene does not accept.
     pub(super) beyond: Option<[f64; 2]>,
-    /// More settings, of a run that this one is held against.
+    /// Additional settings of a second run, with which this one is compared.
     pub(super) other: Option<Vec<String>>,
-    /// Steps that are taken to have been made before.
+    /// Number of steps that count as already made.
     pub(super) from: u64,
-    /// Every how many nodes are looked at.
+    /// Stride of the recorded nodes.
     pub(super) every: u64,
     /// Whether the run turns round at its end and goes back.
     pub(super) back: bool,
-    /// What bars call `largest`: the largest of it at any node.
+    /// Formula whose largest size over the nodes is `largest` in bars.
     pub(super) largest: Option<String>,
     /// Abbreviations, `NAME = FORMULA`.
     #[serde(rename = "let")]
@@ -108,7 +108,7 @@ pub(super) struct Run {
     pub(super) checks: Vec<Check>,
 }
 
-/// A check; formulas are of the node, its first (`x_0`), the other run (`other_x`) and the closed form (`exact_x`).
+/// A check. Formulas use the node, the first node (`x_0`), the other run (`other_x`) and the closed form (`exact_x`).
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Check {
@@ -120,18 +120,18 @@ pub(super) struct Check {
     pub(super) methods: Vec<String>,
     #[serde(default)]
     pub(super) except: Vec<String>,
-    /// From when on (s).
+    /// Time (s) at which the check begins.
     pub(super) from: Option<String>,
-    /// Up to the first node at which what is looked at is no larger.
+    /// The check ends at the first node whose value is no larger than this.
     pub(super) above: Option<String>,
     /// `own` in the bar is the error of a method with steps of this part of a time constant ..
     pub(super) part: Option<String>,
-    /// .. over so many of them.
+    /// .. over this number of time constants.
     pub(super) length: Option<String>,
     pub(super) bar: Option<String>,
 }
 
-/// What is looked at.
+/// The quantity that a check examines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Kind {
@@ -144,7 +144,7 @@ pub(super) enum Kind {
     Constant,
     Nearest,
     Sign,
-    /// The run ends with an error of dependent rows where this is zero.
+    /// The run must end with an error of dependent rows where this is zero.
     Dependent,
 }
 
@@ -161,7 +161,8 @@ impl HardCase {
     }
 }
 
-/// Whether the method is one of these: `gauss*` is all that begin so, and a list that begins with `not` has all others.
+/// Whether the list has the method. `gauss*` stands for all names that begin so, a leading `not` inverts the list, and an empty list has
+/// all methods.
 pub(super) fn makes(names: &[String], method: &Method) -> bool {
     let own = method.info().name;
     let named = |name: &String| name.strip_suffix('*').map_or(name == own, |begin| own.starts_with(begin));

@@ -1,4 +1,4 @@
-//! What the formulas of a hard case mean: numbers of the run and the method, and of each node.
+//! The meaning of the formulas of a hard case: numbers of the run and the method, and of each node.
 
 use super::case::Check;
 use expression::{Expression, Graph, Names, Tape, parse};
@@ -9,13 +9,13 @@ use lagrangian::linear::larger;
 use scene::{AnyScene, Scene};
 use sleigh::Exact;
 
-/// Formulas and the values of their names: first of a node, of the node of the other run, and of the closed form.
+/// Formulas and the values of their names: of a node, of the node of the other run, and of the closed form.
 pub(super) struct Formulas<'a> {
     names: Names,
     graph: Graph,
     meanings: Vec<Expression>,
     values: Vec<f64>,
-    /// How many numbers a node has.
+    /// Count of the numbers of a node.
     width: usize,
     run: &'a Recorded,
     other: Option<&'a Recorded>,
@@ -28,7 +28,7 @@ pub(super) struct Formulas<'a> {
 const EXACT: [&str; 5] = ["exact_x", "exact_y", "exact_heading", "exact_speed", "exact_turn_rate"];
 
 impl<'a> Formulas<'a> {
-    /// The formulas of a run of a scene, beside another; `seen` are the names of what a node has.
+    /// The formulas of a run of a scene, and of another run if there is one; `seen` names the values of a node.
     pub(super) fn new(
         method: &'a Method,
         scene: &AnyScene,
@@ -87,7 +87,7 @@ impl<'a> Formulas<'a> {
         if let AnyScene::Sleigh(scene) = scene {
             let Scene { sleigh, start, .. } = &**scene;
             let gyration = (sleigh.pivot_inertia() / sleigh.mass()).sqrt();
-            // The speed that has all the energy, and the spin that has; and the rate at which a spin grows or dies out on a straight line.
+            // The speed and the spin that have all the energy, and the rate (1/s) at which a spin grows or decays on a straight line.
             let all = start.speed.hypot(gyration * start.turn_rate);
             for (name, value) in [
                 ("m", sleigh.mass()),
@@ -102,7 +102,7 @@ impl<'a> Formulas<'a> {
         }
     }
 
-    /// A name has that value.
+    /// Sets the value of a name, and adds the name if it is new.
     pub(super) fn set(&mut self, name: &str, value: f64) {
         if let Some(k) = self.names.position(name) {
             self.values[k] = value;
@@ -143,28 +143,28 @@ impl<'a> Formulas<'a> {
         Ok(if let [one] = found[..] { one } else { found.into_iter().fold(0.0, larger) })
     }
 
-    /// The value of a formula that is of no node.
+    /// The value of a formula without values of a node.
     pub(super) fn value(&mut self, text: &str) -> Result<f64, String> {
         let tape = self.tape(&[text.to_owned()])?;
         self.evaluated(&tape)
     }
 
-    /// The bar of a check; zero where it has none.
+    /// The bar of a check; zero if it has none.
     pub(super) fn bar(&mut self, check: &Check) -> Result<f64, String> {
         check.bar.as_ref().map_or(Ok(0.0), |bar| self.value(bar))
     }
 
-    /// What `own` stands for: the error of the method with steps of `part` of a time constant, over `length` of them.
+    /// Sets `own`: the error of the method with steps of `part` of a time constant, over `length` time constants.
     pub(super) fn set_own(&mut self, part: &str, length: &str) -> Result<(), String> {
         let (part, length, steps) = (self.value(part)?, self.value(length)?, self.value("steps")?);
-        // An adaptive method has no error of its step, but its tolerance in each.
+        // An adaptive method has no error of its step, but meets its tolerance in each.
         let adaptive = self.method.is_adaptive();
         let own = if adaptive { Method::TOLERANCE * steps } else { truncation(self.method.info().order, part, length) };
         self.set("own", own);
         Ok(())
     }
 
-    /// What `other_worst` stands for: the largest size of the same in the other run.
+    /// Sets `other_worst`: the largest size of the formulas in the other run.
     pub(super) fn set_other_worst(&mut self, texts: &[String]) -> Result<(), String> {
         if let Some(other) = self.other {
             let series = self.series_of(texts, other, None)?;
@@ -193,7 +193,7 @@ impl<'a> Formulas<'a> {
         nodes.map(|(k, node)| Ok((node.t, self.at(&tape, node, other.map(|other| &other.nodes[k]))?))).collect()
     }
 
-    /// The value at the last node; none where a run did not come to its end.
+    /// The value at the last node; `None` if the other run did not come to its end.
     pub(super) fn last(&mut self, texts: &[String]) -> Result<Option<f64>, String> {
         let tape = self.tape(texts)?;
         let beside = match self.other.map(Recorded::end) {

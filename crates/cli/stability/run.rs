@@ -51,7 +51,7 @@ impl Bench<'_> {
                 findings.extend(self.found(check, &mut formulas, &recorded)?);
             }
         }
-        // Where an error is what is asked for, it is no failure of the case.
+        // An error that the case asks for is no failure.
         let told = asked_for && findings.iter().any(|found: &Finding| found.what == NAMELESS && found.holds());
         let mut trial = Trial::new(
             &*self.run.label,
@@ -61,7 +61,7 @@ impl Bench<'_> {
         Ok(trial)
     }
 
-    /// What a check finds.
+    /// The findings of a check.
     fn found(
         &self,
         check: &'static Check,
@@ -101,7 +101,7 @@ impl Bench<'_> {
         })
     }
 
-    /// The scene of the run, the names of what is seen of a node, and its nodes; or of the run with more settings.
+    /// The scene of the run, the names of the recorded values, and the record. With `more` settings, it is the other run.
     fn record(&self, more: Option<&[String]>) -> Result<(AnyScene, Vec<String>, Recorded), String> {
         let begin = if self.shared.scene.contains("[system]") { "" } else { SLEIGH };
         let text = [begin, &self.shared.scene, &self.run.scene].concat();
@@ -131,7 +131,8 @@ impl Bench<'_> {
 
 const NAMELESS: &str = "runs that go on, or fail without naming the constraints";
 
-/// Whether a run ends with an error of the second row, and how far from where that vanishes; nothing of a method that lacks a basis there.
+/// Findings of a run that must end with an error of the second row: the distance from the place where that row vanishes, and whether the
+/// error names the row. Empty if the method lacks a basis there.
 fn dependent(run: &Recorded, off: f64, bar: f64) -> Vec<Finding> {
     let hint = run.failure.and_then(|failure| failure.hint());
     let source = run.failure.map(|failure| failure.source);
@@ -159,7 +160,7 @@ impl Kind {
         }
     }
 
-    /// The formulas that it looks at.
+    /// The formulas that a check of this kind evaluates.
     fn texts(self, of: &[String]) -> Vec<String> {
         match self {
             Self::Energy => vec!["energy_error".to_owned()],
@@ -182,13 +183,13 @@ impl Recording<'_> {
     fn on(self, built: &BuiltScene) -> (Vec<String>, Recorded) {
         let system = built.system();
         let mechanism = system.mechanism();
-        // The first three are places; after them are the rates, and of a sleigh those of its body and of a rotor.
+        // The first three values are places, the next ones rates; a sleigh has the rates of its body and of a rotor.
         let last = system.named("rotor_rate").unwrap_or(VALUES - 1);
         let places = [0, 1, 2, 3, 4, last];
         let names = system.quantities();
         let names = places.iter().filter_map(|k| names.get(*k)).map(|quantity| quantity.name.clone()).collect();
         let look = |state: &AnyState| -> [f64; VALUES] {
-            // The velocities in the angles that the method sees, the place with all its turns.
+            // Velocities use the angles that the method sees; places count whole turns.
             let place = state.unwrapped();
             std::array::from_fn(|i| if i < 3 { place[i] } else { system.value(places[i], 0.0, state.q(), state.v()) })
         };
@@ -199,7 +200,7 @@ impl Recording<'_> {
         let mut outcome = integrate_from(self.from, &*mechanism, self.method, &schedule, &mut state, &mut recorder);
         if self.back && outcome.is_ok() {
             state = state.reversed();
-            // As a part of the same run: at the beginning of another a slip would be taken from the velocity.
+            // The return continues the same run: a new run would begin by removing a slip from the velocity.
             let back = Schedule { steps: 2 * end, ..schedule };
             outcome = integrate_from(end, &*mechanism, self.method, &back, &mut state, &mut recorder);
         }

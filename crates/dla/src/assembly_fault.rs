@@ -20,10 +20,10 @@ impl fmt::Display for ConstraintRow {
     }
 }
 
-/// The constraints that depend on one another, the heaviest first, as many as an error tells of.
+/// Constraints that depend on one another, the heaviest first.
 pub type DependentRows = [Option<ConstraintRow>; 6];
 
-/// Why a step of an assembly of many elements failed, where it tells more than that of a system of a shape.
+/// The error of a step of an assembly of many elements, if it tells more than the error of one system.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum AssemblyFault {
     /// The sparse matrix could not be analysed or factorised, for want of memory or by its size.
@@ -43,18 +43,18 @@ pub enum AssemblyFault {
     Singular {
         /// In which equations.
         stage: Stage,
-        /// The smallest pivot, relative to its column; zero where none is left.
+        /// The smallest pivot, relative to its column; zero if none is left.
         pivot: f64,
-        /// The constraints that depend on one another there; none where it is not they.
+        /// The constraints that depend on one another; empty if the constraints are independent.
         constraints: DependentRows,
     },
     /// The equations have a solution, but it cannot be shown to continue the motion.
     #[error("the step is too long: a constraint would turn by {turn:.2} rad in one step")]
     Branch {
-        /// By how much the constraint turns that turns most (rad).
+        /// The largest turn of a constraint (rad).
         turn: f64,
     },
-    /// A function of an element, or a derivative of one, is not a number or not finite; coordinates and rows are those of the assembly.
+    /// A function of an element, or one of its derivatives, is infinite or NaN; coordinates and rows are numbered as in the assembly.
     #[error("element {element} ({name}): {source}")]
     NotANumber {
         /// The element, counted from 0 in the order in which they were added.
@@ -68,7 +68,7 @@ pub enum AssemblyFault {
 }
 
 impl AssemblyFault {
-    /// The error of the step of one system that says most of it.
+    /// The nearest error of a step of one system.
     pub(crate) fn of_one_system(self) -> StepError {
         match self {
             Self::Factorisation { reason, .. } => StepError::Unsupported { reason },

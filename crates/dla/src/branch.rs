@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 /// A solution whose constraint turns by less than this in the step (rad) counts as near its start.
 pub(crate) const NEAR: f64 = 1.0;
 
-/// What to say of a solution that is not shown to continue the motion: equations whose derivatives are the same there and at the start are
-/// linear, and have no other solution.
+/// The error of a solution that is not shown to continue the motion. If the derivatives are the same there and at the start, the equations
+/// are linear and have no other solution.
 #[cold]
 pub(crate) fn unfollowed(derivatives: [&[f64]; 2]) -> StepError {
     /// Relative to the largest of them.
@@ -19,8 +19,8 @@ pub(crate) fn unfollowed(derivatives: [&[f64]; 2]) -> StepError {
     if same { StepError::Stiff } else { StepError::Branch }
 }
 
-/// By how much a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two ends do
-/// not show whole turns. Zero where no angle turns by more than 1 rad.
+/// The angle by which a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two
+/// ends do not show whole turns. Zero if no angle turns by more than 1 rad.
 #[inline(always)]
 pub(crate) fn turn_of<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -44,11 +44,11 @@ pub(crate) fn tells_turn<const N: usize, const M: usize>(
     v0: &[f64; N],
 ) -> Result<(), StepError> {
     let turn = turn_of(system, (t0, h), q0, v0);
-    // What is no number is told by the equations of the step.
+    // The equations of the step report a turn that is not a number.
     if turn < PI || !turn.is_finite() { Ok(()) } else { Err(turned_by(system, (t0, h), q0, v0, turn)) }
 }
 
-/// The error of such a step, with the coordinate that alone turns the constraint most.
+/// The error of a step with too large a turn, with the coordinate that alone turns the constraint most.
 #[cold]
 #[inline(never)]
 fn turned_by<const N: usize, const M: usize>(
@@ -66,10 +66,10 @@ fn turned_by<const N: usize, const M: usize>(
     StepError::Turn { coordinate, turn, step: h.abs() }
 }
 
-/// By how much an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its derivative
-/// along the increment.
+/// The angle by which an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its
+/// derivative along the increment.
 ///
-/// Zero where no angle turns by more than 1 rad.
+/// Zero if no angle turns by more than 1 rad.
 #[inline(always)]
 #[must_use]
 pub fn turn<const N: usize, const M: usize>(
@@ -94,12 +94,13 @@ fn turned<const N: usize, const M: usize>(a: [[Dual<f64, 1>; N]; M]) -> f64 {
 }
 
 /// Numerical continuation in the step length: the solution at the end of the branch that begins with `start` at length zero. `solve` finds
-/// the solution near a guess for a part of the length, and gives none where it may be another one; parts are at most `longest`.
+/// the solution near a guess for a part of the length, and returns `None` if that may be a solution of another branch. Parts are at most
+/// `longest`.
 #[must_use]
 pub fn followed<X: Clone>(start: &X, longest: f64, mut solve: impl FnMut(f64, &mut X) -> Option<()>) -> Option<X> {
-    /// Where shorter parts are needed, the branch counts as ended.
+    /// If shorter parts are needed, the branch counts as ended.
     const SHORTEST: f64 = 1.0 / 1024.0;
-    // A lower bound on the parts, also where the turn of the whole step is huge or NaN.
+    // A lower bound on the parts, even if the turn of the whole step is huge or NaN.
     let longest = longest.max(SHORTEST);
     let (mut x, mut reached, mut part) = (start.clone(), 0.0, f64::min(longest, 0.25));
     while reached < 1.0 {

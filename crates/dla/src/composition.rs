@@ -13,7 +13,7 @@ pub struct Composition<Base> {
     pub(crate) base: Base,
     weights: [f64; MOST],
     stages: usize,
-    /// What does work that is to be reported.
+    /// The sources whose work is reported.
     sources: PowerSources,
 }
 
@@ -23,7 +23,7 @@ const SUZUKI: usize = 5;
 const MOST: usize = 15;
 
 impl<Base> Composition<Base> {
-    /// Of the base with the first weights, mirrored about a centre that makes the sum one.
+    /// The composition of the base with the first weights, mirrored about a centre that makes the sum one.
     fn mirrored(base: Base, first: &[f64]) -> Self {
         let (centre, stages) = (1.0 - 2.0 * first.iter().sum::<f64>(), 2 * first.len() + 1);
         let weight = |i: usize| first.get(i.min((stages - 1).saturating_sub(i))).copied().unwrap_or(centre);

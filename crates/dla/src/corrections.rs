@@ -9,20 +9,20 @@ use lagrangian::{FactoredSaddle, Rounded, Rows, Saddle, from_fn, mapped};
 /// Jacobian and first-order evaluations, as long as they converge as well.
 pub(crate) struct Corrections<'e, 'a, D, const N: usize, const M: usize> {
     of: &'e Increment<'a, D, N, M>,
-    /// The independent rows that are solved for, where rows are dependent and consistent.
+    /// The independent rows in the equations, if rows are dependent and consistent.
     pub(crate) some: Option<Rows>,
     /// Their multipliers.
     lambda: [f64; M],
-    /// Whether the determinant of the last correction was positive; none of one with some of the rows.
+    /// Whether the determinant of the last correction was positive; `None` if the correction used only some of the rows.
     positive: Option<bool>,
-    /// The Jacobian of the last of Newton's own corrections, for the simplified ones after it.
+    /// The Jacobian of the last own correction of Newton, for the simplified ones after it.
     jacobian: Option<Jacobian<N, M>>,
-    /// The last correction, and the momenta where it was made.
+    /// The last correction, and the momenta from which it was made.
     last: LastCorrection<N>,
-    /// The correction before the last, which led to where the last was made.
+    /// The correction before the last.
     before: [f64; N],
-    /// Whether the reaction, the part of the momenta that the multipliers take up, is subtracted before the linear equations are solved:
-    /// where it is large, its round-off in their solution is larger than that of the rest.
+    /// Whether the reaction, the part of the momenta that the multipliers take up, is subtracted before the linear equations are solved: if
+    /// the reaction is large, its round-off in their solution exceeds the round-off of the rest.
     refined: bool,
 }
 
@@ -75,7 +75,7 @@ impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Correction
         }
     }
 
-    /// The Jacobian of the last of Newton's own corrections, where it solved for all rows.
+    /// The derivatives of the momenta in the last own correction of Newton, if it solved for all rows.
     #[inline(always)]
     pub(crate) fn block(&self) -> Option<[[f64; N]; N]> {
         self.jacobian.as_ref().map(|jacobian| jacobian.block)
@@ -108,7 +108,7 @@ impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Correction
         mapped(&left, |r| -r)
     }
 
-    /// The simplified correction at `v`, where it is as good as Newton's own.
+    /// The simplified correction at `v`; `None` if it is not as good as Newton's own.
     #[inline(always)]
     fn simplified(&mut self, v: &[f64; N]) -> Option<[f64; N]> {
         let Some(Jacobian { block, factors }) = &self.jacobian else { return None };
@@ -214,7 +214,7 @@ fn of_some<const N: usize, const M: usize>(
     Saddle { block: *block, transposed: *a0, rows: *rows, right, level }.solve_some(some)
 }
 
-/// The rows found before, or those that imply the others at the beginning of the step.
+/// The rows found before, or else independent rows that imply all rows at the beginning of the step.
 #[cold]
 #[inline(never)]
 fn independent<const N: usize, const M: usize>(

@@ -6,16 +6,16 @@ use lagrangian::{RowSpace, Rows, Shown, mapped};
 use std::fmt;
 use thiserror::Error;
 
-/// Rows of a constraint that depend on one another where a step needs independent ones.
+/// Rows of a constraint that depend on one another, in a step that needs independent ones.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub struct Dependent {
-    /// The rows: those that can be left out, and those that they are made of.
+    /// The rows that can be left out, and the rows on which they depend.
     pub rows: Rows,
     /// The time (s).
     pub time: f64,
-    /// How far the nearest of them lies from the span of the others, relative to its size in the kinetic metric.
+    /// How far the nearest of them lies from the span of the other rows, relative to its size in the kinetic metric.
     pub distance: f64,
-    /// What that means.
+    /// The kind of the dependence.
     pub dependency: Dependency,
 }
 
@@ -51,11 +51,11 @@ impl fmt::Display for Dependent {
     }
 }
 
-/// Rows that do not depend on one another and imply the others, where equations with all rows have failed with `error`.
+/// Independent rows that imply all rows, after equations with all rows have failed with `error`.
 ///
 /// # Errors
-/// [`StepError::Dependent`] where the rank drops at the place or the rows contradict one another; `error` where the rows are
-/// independent, so that something else is degenerate.
+/// [`StepError::Dependent`] if the rank drops at the place or the rows contradict one another; `error` if the rows are independent, so that
+/// something else is degenerate.
 #[cold]
 #[inline(never)]
 pub(crate) fn independent_rows<const N: usize, const M: usize>(
@@ -85,8 +85,8 @@ pub(crate) fn independent_rows<const N: usize, const M: usize>(
     Err(Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into())
 }
 
-/// The error of the equations at a place, with the function named that is not finite there, or the rows of the constraint where their
-/// rank drops there or the rows contradict one another.
+/// The error of the equations at a place. It names the function that is not finite there, or the rows of the constraint if their rank drops
+/// there or they contradict one another.
 #[cold]
 #[inline(never)]
 pub(crate) fn named_at<const N: usize, const M: usize>(
@@ -105,7 +105,7 @@ pub(crate) fn named_at<const N: usize, const M: usize>(
     independent_rows(system, t, q, v, error).err().unwrap_or(error)
 }
 
-/// The error of the equations of a step, with what is wrong named as by [`named_at`] at its beginning, in its middle or at its end.
+/// The error of the equations of a step, named as by [`named_at`] at the beginning, in the middle or at the end of the step.
 #[cold]
 #[inline(never)]
 pub(crate) fn named_along<const N: usize, const M: usize>(
@@ -126,8 +126,8 @@ pub(crate) fn named_along<const N: usize, const M: usize>(
     error
 }
 
-/// The error of a step, with the rows of the constraint named where they depend on one another at its beginning, or come to where their
-/// rank drops.
+/// The error of a step. It names the rows of the constraint if they depend on one another at the beginning, or if the motion comes to a
+/// place where their rank drops.
 #[cold]
 #[inline(never)]
 pub(crate) fn named<const N: usize, const M: usize>(
@@ -154,7 +154,7 @@ pub(crate) fn named<const N: usize, const M: usize>(
     at_start
 }
 
-/// The error that names the rows of the constraint that depend on one another at a place; `error` where none do.
+/// The error that names the rows of the constraint that depend on one another at a place; `error` if there are none.
 #[cold]
 #[inline(never)]
 pub(crate) fn named_rows<const N: usize, const M: usize>(
@@ -182,10 +182,10 @@ fn dependent_at<const N: usize, const M: usize>(
     Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into()
 }
 
-/// Checks that at the end of a step the rows that it left out hold, too.
+/// Checks that the rows that a step left out hold at its end, too.
 ///
 /// # Errors
-/// [`StepError::Dependent`] names those that do not, with all they depended on.
+/// [`StepError::Dependent`] names the rows that do not hold, with all rows on which they depended.
 #[cold]
 #[inline(never)]
 pub(crate) fn rows_left_out<const N: usize, const M: usize>(
@@ -198,7 +198,7 @@ pub(crate) fn rows_left_out<const N: usize, const M: usize>(
     let rows = system.reaction_rows(t1, q1, v1);
     let (_, b) = system.constraint(t1, q1);
     let slip = system.residual(t1, q1, v1);
-    // Every row relative to its own size, the terms that make up the largest of them being what rounding comes from.
+    // Every row relative to its own size; rounding comes from the terms of the largest row.
     let size = |k: usize| rows[k].iter().fold(0.0, |m, x| larger(m, *x));
     let terms = (0..M)
         .filter(|k| size(*k) > 0.0)
@@ -208,7 +208,7 @@ pub(crate) fn rows_left_out<const N: usize, const M: usize>(
     let missed: Rows = (0..M)
         .filter(|k| !kept.contains(*k))
         .filter(|k| {
-            // Twice its rounding is allowed to a position, since none but the others was solved for.
+            // Twice its rounding is allowed to a position, since only the kept rows were solved for.
             let off = positions.and_then(|g| g[*k]).is_some_and(|g| {
                 let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
                 g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding

@@ -4,17 +4,17 @@ use lagrangian::{from_fn, mul_add};
 /// Larger systems, by coordinates or constraints, have no frozen Jacobian: each of their steps is made without memory.
 pub(crate) const COORDINATES: usize = 12;
 
-/// A correction is accepted without a check of its residual at most so many times in a row, and only after so many steps with the same
-/// Jacobian.
+/// Maximum number of corrections in a row that are accepted without a check of their residual, and least number of steps with the same
+/// Jacobian before the first one.
 const OFTEN: u32 = 16;
-/// A correction that is larger than this part of the unknowns is always checked: the predictor was then off by more than round-off.
+/// A correction above this fraction of the unknowns is always checked: the predictor was then off by more than round-off.
 const SLIGHT: f64 = 1e-12;
 
 pub(crate) type UnknownsRow = [f64; COORDINATES];
 
 /// A frozen Jacobian: the inverse of a matrix of derivatives, by columns, which serves several steps (chord method).
 ///
-/// It is renewed where the corrections that it cost more than a new one would take as long as a new one.
+/// It is renewed when the corrections that it cost in surplus take as long as a new one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub(crate) struct StepDerivatives {
@@ -26,12 +26,12 @@ pub(crate) struct StepDerivatives {
     /// The corrections that the first step with it took, and how many more all later steps took together.
     least: u32,
     more: u32,
-    /// How many steps it has served.
+    /// The number of steps it has served.
     searches: u32,
-    /// For how many more steps it is renewed in every step.
+    /// The number of coming steps in which it is renewed every time.
     own: u32,
-    /// The largest correction, relative to the unknowns, of which a check has shown that it leaves a residual of round-off; and how many
-    /// corrections have been accepted without a check since.
+    /// The largest correction, relative to the unknowns, after which a check found a residual of round-off; and the number of corrections
+    /// accepted without a check since.
     seen: f64,
     unseen: u32,
 }
@@ -49,10 +49,10 @@ impl StepDerivatives {
         unseen: 0,
     };
 
-    /// A new Jacobian, given by rows; none where it has no inverse, or one that loses digits.
+    /// Takes a new Jacobian, given by rows; `None` if it has no inverse, or an inverse that loses digits.
     #[inline(never)]
     pub(crate) fn renew<const N: usize>(&mut self, matrix: &[[f64; N]; N]) -> Option<()> {
-        /// Where more than three digits are lost, the step is made without memory, perhaps in a basis that keeps them.
+        /// If more than three digits are lost, the step is made without memory, perhaps in a basis that keeps them.
         const CLEAR: f64 = 1e3;
         let inverse = Inverse::new(matrix).ok()?;
         // The diagonal of |K| |K^-1|, whatever the scale of rows and columns. (Skeel 1979, J. ACM 26, 494-526.)
@@ -87,7 +87,7 @@ impl StepDerivatives {
         self.unseen = self.unseen.saturating_add(1);
     }
 
-    /// Records that a check of a correction of the size `d` of unknowns of the size `x` found round-off, where `sure` confirms it. Older
+    /// Records that a check of a correction of the size `d` of unknowns of the size `x` found round-off, if `sure` confirms it. Older
     /// records count half at every new one.
     #[inline(always)]
     pub(crate) fn have_sufficed(&mut self, d: f64, x: f64, sure: impl FnOnce() -> bool) {
@@ -112,13 +112,13 @@ impl StepDerivatives {
         }
     }
 
-    /// The same by columns padded to `W` places: beyond four, whole vector registers are quicker.
+    /// The same product by columns padded to `W` entries: beyond four, whole vector registers are quicker.
     #[inline(always)]
     fn times_of<const N: usize, const W: usize>(&self, x: &[f64; N]) -> [f64; N] {
         let mut sum = [0.0; W];
         for (column, x) in self.columns.iter().zip(x) {
             for i in 0..W {
-                // Of few, the chain of dependent operations is one addition a column where products are not fused into it.
+                // In short columns, the chain of dependent operations is one addition a column if products are not fused into it.
                 sum[i] = if W > 4 { mul_add(column[i], *x, sum[i]) } else { sum[i] + column[i] * x };
             }
         }
@@ -135,7 +135,7 @@ impl StepDerivatives {
         sum
     }
 
-    /// Records how many corrections a step took with it, and marks it stale where the surplus has reached the cost of a new one.
+    /// Records the number of corrections that a step took with it, and marks it stale if the surplus has reached the cost of a new one.
     #[inline(always)]
     pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
         // The cost of a new Jacobian in corrections, about: `(N/3)^3`, one for three coordinates.
@@ -143,8 +143,8 @@ impl StepDerivatives {
         self.took_at(price, corrections);
     }
 
-    /// The same in the basis of admissible velocities, where a step takes one correction more now and then although the Jacobian is no
-    /// older, since the basis itself turns within the step.
+    /// As [`Self::took`], in the basis of admissible velocities: a step there takes one correction more now and then although the Jacobian
+    /// is no older, since the basis itself turns within the step.
     #[inline(always)]
     pub(crate) fn took_in_basis<const N: usize>(&mut self, corrections: u32) {
         let price = const { 8 + (N * N * N).div_ceil(27) as u32 };
@@ -153,7 +153,7 @@ impl StepDerivatives {
 
     #[inline(always)]
     fn took_at(&mut self, price: u32, corrections: u32) {
-        /// So many steps in a row have a Jacobian of their own where already the second step with one reaches its cost.
+        /// Number of steps in a row that renew their Jacobian, after already the second step with one reached its cost.
         const OWN: u32 = 16;
         self.searches = self.searches.saturating_add(1);
         if self.searches == 1 {
@@ -169,7 +169,7 @@ impl StepDerivatives {
         }
     }
 
-    /// Every number of it, in a fixed order.
+    /// Visits every number of it, in a fixed order.
     pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
         let Self { columns, positive, stale, least, more, searches, own, seen, unseen } = self;
         columns.as_flattened_mut().iter_mut().for_each(&mut visit);
@@ -187,7 +187,7 @@ impl StepDerivatives {
 pub(crate) fn counted(count: &mut u32, visit: &mut impl FnMut(&mut f64)) {
     let mut number = f64::from(*count);
     visit(&mut number);
-    // A number from a file that is no count saturates to one.
+    // A number from a file that is not a count saturates to one.
     *count = number as u32;
 }
 
@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
     }
 
-    /// A correction is accepted without a check where one as large was checked lately, with a Jacobian that is no longer new.
+    /// A correction is accepted without a check if one as large was checked lately, with a Jacobian that is no longer new.
     #[test]
     fn what_was_seen_is_believed_for_a_while() {
         let unit = [[1.0, 0.0], [0.0, 1.0]];

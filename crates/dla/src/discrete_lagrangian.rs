@@ -51,7 +51,7 @@ pub trait DiscreteLagrangian<const N: usize> {
     /// the same in every step: an energy drift of half an ulp a step.
     fn average<S: Scalar>(&self, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S;
 
-    /// Discrete forces `f_d^-` at `q0` and `f_d^+` at `q1` (N s), with the quadrature of the action; none by default.
+    /// Discrete forces `f_d^-` at `q0` and `f_d^+` at `q1` (N s), with the quadrature of the action; `None` by default.
     ///
     /// Marsden and West 2001, equation (3.2.1).
     fn forces<S: Scalar>(&self, _t0: S, _h: S, _q0: &[S; N], _v: &[S; N]) -> Option<[[S; N]; 2]> {

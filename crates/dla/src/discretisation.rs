@@ -17,7 +17,7 @@ pub trait Discretisation<const N: usize, const M: usize> {
         v: &[f64; N],
     ) -> EndMomenta<N>;
 
-    /// The same with the derivatives of `D1 L_d + f_d^-` in the mean velocity.
+    /// The momenta with nodes placed by `v`, and the derivatives of `D1 L_d + f_d^-` in the mean velocity.
     fn linearised(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -29,11 +29,11 @@ pub trait Discretisation<const N: usize, const M: usize> {
     /// `w_d`, in the units of `A v`.
     fn residual(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [f64; M];
 
-    /// The same with its derivatives in the mean velocity.
+    /// The residual with its derivatives in the mean velocity.
     fn rows(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M];
 
-    /// The basis of the mean velocities with `w_d = 0` where it is the system's basis at one configuration, that of the mean velocity
-    /// `way`; none by default.
+    /// The basis of the mean velocities with `w_d = 0`, if it is the system's basis at one configuration, which the mean velocity `way`
+    /// gives; `None` by default.
     fn basis_along(
         &self,
         _system: &dyn Mechanics<N, M>,
@@ -54,16 +54,16 @@ pub trait Discretisation<const N: usize, const M: usize> {
     ) -> RoundedStep<N, M>;
 }
 
-/// `[D1 L_d, D2 L_d]`, and `[f_d^-, f_d^+]` where there are forces.
+/// `[D1 L_d, D2 L_d]`, and `[f_d^-, f_d^+]` if there are forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndMomenta<const N: usize> {
-    /// Of the discrete Lagrangian.
+    /// The derivatives of the discrete Lagrangian.
     pub slopes: [[f64; N]; 2],
-    /// Of the discrete forces.
+    /// The discrete forces; `None` if there are no forces.
     pub forces: Option<[[f64; N]; 2]>,
 }
 
-/// What [`Discretisation::rounded`] gives.
+/// The result of [`Discretisation::rounded`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoundedStep<const N: usize, const M: usize> {
     /// `D1 L_d`.
@@ -79,9 +79,9 @@ pub struct RoundedStep<const N: usize, const M: usize> {
 /// Rules are values, not types: a step is compiled once for all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
-    /// Of `L_d`.
+    /// The rule of `L_d`.
     pub lagrangian: Rule,
-    /// Of `w_d`.
+    /// The rule of `w_d`.
     pub constraint: Rule,
 }
 
@@ -126,7 +126,7 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
         EndMomenta { slopes: [d1, d2], forces }
     }
 
-    /// Dual numbers are seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
+    /// Dual numbers are seeded at the nodes, whose configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
     /// themselves are computed in plain numbers.
     #[inline]
     fn linearised(
@@ -200,7 +200,7 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
         sum
     }
 
-    /// Of a single node, where the constraints are linear.
+    /// The basis at the only node of the rule, if the constraints are linear.
     #[inline]
     fn basis_along(
         &self,

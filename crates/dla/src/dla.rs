@@ -12,7 +12,7 @@ use lagrangian::{Alpha, Midpoint, NotAWeight, Rule, Trapezoid, from_fn, mapped};
 /// How the equations of a step are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Form {
-    /// In the basis of admissible velocities where the system gives one, else with multipliers.
+    /// In the basis of admissible velocities if the system gives one, else with multipliers.
     #[default]
     Best,
     /// With multipliers.
@@ -34,24 +34,24 @@ pub enum Form {
 /// L_v(q1, v1) = D2 L_d(q0, q1) + f_d^+(q0, q1) + A(q1)' mu,              A(q1) v1 + b(q1) = 0.
 /// ```
 ///
-/// Eliminating the velocities gives the equations of Cortes and Martinez (2001, Nonlinearity 14, 1365-1392), with the
-/// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
-/// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
-/// the energy in general. (The book, (3.1), (3.2) and (2.3).)
+/// Eliminating the velocities gives the equations of Cortes and Martinez (2001, Nonlinearity 14, 1365-1392), with the node's multiplier
+/// `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint if the discrete Lagrangian and the
+/// discrete constraint are. It keeps both constraints to round-off. It does not bound the energy in general. (The book, (3.1), (3.2) and
+/// (2.3).)
 ///
-/// A constraint on positions, [`System::holonomic`], takes the place of its discrete one: `g(q1) = 0` instead of `w_d = 0`.
-/// With such constraints alone this is RATTLE, by the discrete Lagrangian at hand (Marsden and West 2001, section 3.5.4; Jay
-/// 1993). A constraint that is not affine, [`System::nonlinear`], acts along `d phi / dv` at the two nodes and is met by the
-/// mean velocity at the rule's nodes, and by the velocity at the end. Rows that depend on one another and agree are met by
-/// as many of them as are independent, with multipliers; the others hold in the nodes, which is checked.
+/// A constraint on positions, [`System::holonomic`], takes the place of its discrete one: `g(q1) = 0` instead of `w_d = 0`. With such
+/// constraints alone this is RATTLE, by the discrete Lagrangian at hand (Marsden and West 2001, section 3.5.4; Jay 1993). A constraint that
+/// is not affine, [`System::nonlinear`], acts along `d phi / dv` at the two nodes and is met by the mean velocity at the rule's nodes, and
+/// by the velocity at the end. If rows depend on one another and agree, only independent rows have multipliers; the step checks that the
+/// remaining rows hold in the nodes.
 ///
 /// [`System::holonomic`]: lagrangian::System::holonomic
 /// [`System::nonlinear`]: lagrangian::System::nonlinear
 ///
-/// The equations of a long step may have several solutions, or only such as belong to another motion. One is accepted where
-/// it is connected with the solution of a step of length zero: the determinant of the equations has the same sign there, the
-/// constraint turns by less than a radian, and Newton's method contracts from its first step; or else the solution is
-/// followed from length zero to that of the step. No step turns a constraint by half a turn: it could as well be the other.
+/// The equations of a long step may have several solutions, or only solutions of another motion. A solution is accepted if it is connected
+/// with the solution of a step of length zero: the determinant of the equations has the same sign there, the constraint turns by less than
+/// a radian, and Newton's method contracts from its first step. Otherwise the solution is followed from length zero to the length of the
+/// step. No step turns a constraint by half a turn: the turn could as well be one the other way round.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dla<D = Rules> {
     /// The discrete Lagrangian `L_d` and the discrete constraint `w_d`.
@@ -192,14 +192,14 @@ impl<D> Dla<D> {
     }
 }
 
-/// The mean velocity of a step, extrapolated from those of the last ones.
+/// The mean velocity of a step, extrapolated from the last steps.
 #[inline(always)]
 pub(crate) fn expected<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
     state.expected(h).map(|d| from_fn(|i| d[i] / h))
 }
 
-/// The predictor of the mean velocity: the extrapolated one, or that with the acceleration of the last step. None where neither is
-/// known, or where it would change the velocity so much that Newton's method might converge to another solution.
+/// The predictor of the mean velocity: the extrapolated one, or else the one with the acceleration of the last step. `None` if neither is
+/// known, or if it would change the velocity so much that Newton's method might converge to another solution.
 #[inline(always)]
 pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64, expected: Option<[f64; N]>) -> Option<[f64; N]> {
     /// The largest change of the velocity by a predictor, relative to the velocity (`docs/methods/discrete-lagrange-dalembert.md`).

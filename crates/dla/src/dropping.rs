@@ -1,11 +1,11 @@
-//! Where rows of the constraint become dependent on the way of a step.
+//! Finds the place in a step at which rows of the constraint become dependent.
 
 use crate::dependent::{Dependency, Dependent};
 use crate::{Mechanics, State, StepError};
 use lagrangian::linear::{larger, largest};
 use lagrangian::{RowSpace, Rows, from_fn};
 
-/// The way from a node as the motion there goes on, in steps.
+/// The predicted motion from a node, by the number of steps.
 struct Way<'a, const N: usize, const M: usize> {
     system: &'a dyn Mechanics<N, M>,
     t0: f64,
@@ -16,9 +16,9 @@ struct Way<'a, const N: usize, const M: usize> {
     sizes: [f64; M],
 }
 
-/// Where the rank of the rows drops on the way from the node `start`, as the motion there goes on for so many steps.
+/// Finds the place at which the rank of the rows drops within `steps` steps from the node `start`, along the predicted motion.
 ///
-/// Found where the rows come ten times nearer to a dependence than they are at the node. None where they stay as far from it.
+/// The rows must come ten times nearer to a dependence there than at the node; otherwise `None`.
 #[cold]
 #[inline(never)]
 pub(crate) fn rank_drop<const N: usize, const M: usize>(
@@ -27,7 +27,7 @@ pub(crate) fn rank_drop<const N: usize, const M: usize>(
     start: &State<N>,
     steps: f64,
 ) -> Option<Dependent> {
-    /// So much nearer than at the node.
+    /// Largest distance from a dependence, relative to the distance at the node.
     const NEARER: f64 = 0.1;
     const SAMPLES: i32 = 16;
     if M == 0 {
@@ -42,7 +42,7 @@ pub(crate) fn rank_drop<const N: usize, const M: usize>(
     let angles = system.angles();
     let turn = (0..N).filter(|&i| angles[i]).fold(0.0, |most, i| larger(most, h * v0[i]));
     let part = f64::min(steps, 2.0 / turn) / f64::from(SAMPLES);
-    // Ever shorter ways too: from a node that is near to the drop already it is soon passed.
+    // Ever shorter ways too: a node that is near to the drop passes it soon.
     let evenly = (0..=SAMPLES).map(|k| (part * f64::from(k), part));
     let shorter = (1..SAMPLES).map(|k| part * 0.5_f64.powi(k)).map(|s| (s, s));
     for (s, width) in evenly.chain(shorter) {
@@ -70,7 +70,7 @@ pub(crate) fn rank_drop<const N: usize, const M: usize>(
 }
 
 impl<const N: usize, const M: usize> Way<'_, N, M> {
-    /// The span of the rows at a part of the way, and the sizes of the rows.
+    /// The span of the rows and their sizes, `s` steps from the node.
     fn at(&self, s: f64, tolerance: f64) -> (RowSpace<N, M>, [f64; M]) {
         row_sizes(self.system, self.t0 + s * self.h, &self.place(s), self.start.v(), tolerance)
     }
@@ -80,10 +80,10 @@ impl<const N: usize, const M: usize> Way<'_, N, M> {
         start.ahead(&from_fn(|i| s * h * (start.v()[i] + 0.5 * s * h * acceleration[i])))
     }
 
-    /// Whether the constraints on positions hold at a part of the way, as far as it shows the motion: a way across a circle comes to the
-    /// middle, where its row vanishes, and the motion does not.
+    /// Whether the constraints on positions hold `s` steps from the node, so that the way shows the motion: a way across a circle comes to
+    /// the middle, where its row vanishes, but the motion does not.
     fn is_admissible(&self, s: f64) -> bool {
-        /// Of what the way makes of them by its length.
+        /// Largest miss, relative to the change of the constraint along the way.
         const MISSES: f64 = 0.05;
         let Self { system, t0, h, start, .. } = self;
         let (t, q) = (t0 + s * h, self.place(s));
@@ -113,16 +113,16 @@ fn row_sizes<const N: usize, const M: usize>(
     (space, from_fn(|k| space.outside(&rows[k]).1))
 }
 
-/// How far the nearest row is from the span of the others, relative to its size, or from zero, relative to its size elsewhere.
+/// How far the nearest row is from the span of the remaining rows, relative to its size, or from zero, relative to its size elsewhere.
 fn distance<const N: usize, const M: usize>((space, sizes): &(RowSpace<N, M>, [f64; M]), elsewhere: &[f64; M]) -> f64 {
     (0..M).fold(space.dependence().distance, |least, k| least.min(sizes[k] / elsewhere[k]))
 }
 
-/// A change of the velocity by more than this part of it within a step asks for an explanation.
+/// A change of the velocity above this fraction of it within a step asks for an explanation.
 const MUCH: f64 = 0.3;
 
-/// Where the motion has left its branch between two nodes: its velocity changes by more than its acceleration explains, where the rank of
-/// the rows drops.
+/// The place between two nodes at which the motion has left its branch: the velocity changes by more than its acceleration explains, and
+/// the rank of the rows drops.
 #[inline(always)]
 pub(crate) fn left_branch<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -133,10 +133,10 @@ pub(crate) fn left_branch<const N: usize, const M: usize>(
     if M == 0 || !turns(MUCH, start.v(), end.v()) { None } else { unexplained(system, (t0, h), start, end) }
 }
 
-/// Moves a state to the velocity `v1` by `advance`, unless the motion would leave its branch where the rank of the constraint drops.
+/// Moves a state to the velocity `v1` by `advance`, unless the motion would leave its branch at a drop of the rank of the constraint.
 ///
 /// # Errors
-/// [`StepError::Dependent`] then, with the state as it was; and those of `advance`.
+/// [`StepError::Dependent`] if it would leave its branch, with the state as it was; and the errors of `advance`.
 #[inline(always)]
 pub fn on_branch<R, const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -159,7 +159,7 @@ pub fn on_branch<R, const N: usize, const M: usize>(
     }
 }
 
-/// Whether a velocity changes by more than this part.
+/// Whether a velocity changes by more than `part` of its size.
 #[inline(always)]
 fn turns<const N: usize>(part: f64, v0: &[f64; N], v1: &[f64; N]) -> bool {
     let change: [f64; N] = from_fn(|i| v1[i] - v0[i]);
@@ -187,8 +187,8 @@ fn unexplained<const N: usize, const M: usize>(
     if explained { None } else { rank_drop(system, (t0, h), start, 1.0) }
 }
 
-/// Where a method of short steps of its own is turned from its branch: between two of them the velocity turns, and the rows are nearly
-/// dependent there, seen from the node `far`, where they are not. An adaptive method resolves that turn, which is one of its errors.
+/// The place at which a method with short steps of its own is turned from its branch: the velocity turns between two of them, and the rows
+/// are nearly dependent there compared with the node `far`. An adaptive method resolves that turn, although its errors cause it.
 #[inline(always)]
 pub(crate) fn turned_off<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -196,7 +196,7 @@ pub(crate) fn turned_off<const N: usize, const M: usize>(
     last: &State<N>,
     (t, node): (f64, &State<N>),
 ) -> Option<Dependent> {
-    /// Of the velocity, in one of the method's own steps.
+    /// A turn relative to the velocity, in one of the method's own steps.
     const TURN: f64 = 0.02;
     if M == 0 || !turns(TURN, last.v(), node.v()) { None } else { nearly_dependent(system, far, (t, node)) }
 }
@@ -208,7 +208,7 @@ fn nearly_dependent<const N: usize, const M: usize>(
     (t0, far): &(f64, State<N>),
     (t, node): (f64, &State<N>),
 ) -> Option<Dependent> {
-    /// Relative to where they are not.
+    /// Distance from a dependence, relative to the distance at `far`.
     const NEARLY: f64 = 1e-3;
     let tolerance = RowSpace::<N, M>::ROUNDING;
     let elsewhere = row_sizes(system, *t0, far.q(), far.v(), tolerance);
@@ -220,7 +220,7 @@ fn nearly_dependent<const N: usize, const M: usize>(
     })
 }
 
-/// The rows that depend on one another at a place, where the nearest is so far from that.
+/// The error that names the rows that depend on one another at a place; the nearest row is `least` from a dependence.
 fn dropped<const N: usize, const M: usize>(
     space: &RowSpace<N, M>,
     (sizes, elsewhere): (&[f64; M], &[f64; M]),

@@ -2,12 +2,12 @@ use crate::Mechanics;
 use crate::State;
 use lagrangian::{MotionError, from_fn};
 
-/// The quintic through position, velocity and acceleration at both ends of a step: what lies between two nodes, cheaply.
+/// The quintic through position, velocity and acceleration at both ends of a step: a cheap motion between two nodes.
 ///
-/// Its position is of order 6, its velocity, which is the derivative of its position, of order 5; or of the order of the
-/// method where that is less. So no method up to order 6 loses more than one. Between nodes the constraint holds to
-/// order 5 only; [`Samples`](crate::Samples) hold it as nodes do. Over a run the position is twice continuously
-/// differentiable where the nodes have accelerations of one smooth system.
+/// Its position is of order 6, its velocity, which is the derivative of its position, of order 5; or of the order of the method if that is
+/// less. So no method up to order 6 loses more than one order. Between nodes the constraint holds to order 5 only;
+/// [`Samples`](crate::Samples) hold it as nodes do. Over a run the position is twice continuously differentiable if the nodes have
+/// accelerations of one smooth system.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hermite<const N: usize> {
     pub(crate) t0: f64,
@@ -24,7 +24,7 @@ impl<const N: usize> Hermite<N> {
     /// The polynomial between the nodes at the times `t0` and `t1` (s), of the continuous equations' accelerations there.
     ///
     /// # Errors
-    /// [`MotionError`] where the equations of motion determine no accelerations.
+    /// [`MotionError`] if the equations of motion determine no accelerations.
     pub fn between<const M: usize>(
         system: &dyn Mechanics<N, M>,
         (t0, from): (f64, &State<N>),

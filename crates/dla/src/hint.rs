@@ -19,7 +19,7 @@ pub enum Hint {
         /// The part.
         part: f64,
     },
-    /// The iteration still converges quickly where it was cut off: allow more iterations.
+    /// The iteration still converged quickly when it was cut off: allow more iterations.
     MoreIterations,
     /// The iteration moves by round-off only: ask for fewer digits.
     LooserTolerance,
@@ -27,14 +27,14 @@ pub enum Hint {
     Constraints,
     /// The method cannot do the system.
     OtherMethod,
-    /// The method has no room for so large a system: others take less, and an assembly keeps many bodies on the heap.
+    /// The method has no room for so large a system: other methods take less, and an assembly keeps many bodies on the heap.
     LessStack,
-    /// Choose a step that has a node where the forces jump.
+    /// Choose a step that has a node at the jump of the forces.
     NodeAt {
-        /// When (s).
+        /// The time of the jump (s).
         time: f64,
     },
-    /// A function has a corner or a pole where the motion comes to: write it with functions that have a derivative there.
+    /// The motion comes to a corner or a pole of a function: write it with functions that have a derivative there.
     Corner,
     /// A number is too large, infinite or undefined: look at the start and the parameters, then at the step.
     Numbers,
@@ -70,11 +70,11 @@ impl fmt::Display for Hint {
     }
 }
 
-/// Half the step, where nothing tells how much is too much.
+/// Half the step, if the error does not tell how much is too much.
 const HALF: Hint = Hint::ShorterStep { part: 0.5 };
 
 impl NewtonError {
-    /// The corrections before the failure, relative to the largest component there was; empty where the first failed.
+    /// The corrections before the failure, relative to the largest component there was; empty if the first correction failed.
     #[must_use]
     pub fn history(&self) -> History {
         match self {
@@ -128,7 +128,7 @@ fn is_overflow(source: &Singular) -> bool {
 const ROUNDING: f64 = 1e-8;
 
 impl StepError {
-    /// The corrections before the failure; none where nothing was iterated.
+    /// The corrections before the failure; `None` if nothing was iterated.
     #[must_use]
     pub fn history(&self) -> Option<History> {
         match self {
@@ -138,7 +138,7 @@ impl StepError {
         }
     }
 
-    /// The iterations of the failed equations; none where nothing was iterated.
+    /// The iterations of the failed equations; `None` if nothing was iterated.
     #[must_use]
     pub fn iterations(&self) -> Option<u32> {
         match self {
@@ -151,7 +151,7 @@ impl StepError {
 
     /// Whether shorter steps may succeed: this one was too long, or its iteration did not converge.
     ///
-    /// Numbers that are not finite count only where an iteration has left their range; where a state has, shorter steps do not help.
+    /// Numbers that are not finite count only if an iteration has left their range; if a state has, shorter steps do not help.
     #[must_use]
     pub fn may_hold_in_parts(&self) -> bool {
         use NewtonError::{Diverged, IterationLimit, NotFinite, Singular};
@@ -169,17 +169,17 @@ impl StepError {
         }
     }
 
-    /// What to change; none where the error says no more than that it failed.
+    /// What to change; `None` if the error says no more than that it failed.
     #[must_use]
     pub fn hint(&self) -> Option<Hint> {
         Some(match self {
             Self::Newton { stage, source } => source.hint(*stage),
-            // The quantity grows at least as fast as the step; but it is that of an iterate, which may be far off.
+            // The quantity grows at least as fast as the step; but it belongs to an iterate, which may be far off.
             Self::Closed(ClosedStepError::NoSolution { value, bound, .. }) if value.is_finite() && *value >= *bound => {
                 Hint::ShorterStep { part: f64::max(0.5 * bound / value, 0.25) }
             }
             Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
-            // Where the step begins, a shorter one is not better.
+            // At the beginning of the step, a shorter step does not help.
             Self::NotANumber(NotANumber { at_node: false, .. }) => HALF,
             Self::NotANumber(NotANumber { derivative: Derivative::Value, .. }) => Hint::Numbers,
             Self::NotANumber(_) => Hint::Corner,
@@ -215,7 +215,7 @@ impl RunError {
         self.step.saturating_sub(1)
     }
 
-    /// What to change; none where the error says no more than that it failed.
+    /// What to change; `None` if the error says no more than that it failed.
     #[must_use]
     pub fn hint(&self) -> Option<Hint> {
         let hint = self.source.hint();

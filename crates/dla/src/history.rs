@@ -1,10 +1,10 @@
 use lagrangian::mapped;
 use std::fmt;
 
-/// The sizes of the last corrections of an iteration: of `F'(x)^-1 F(x)`, which is the residual in the units of
-/// the unknowns, whatever those of the equations are (Deuflhard 2004, Newton Methods for Nonlinear Problems, section 1.4).
+/// The sizes of the last corrections of an iteration: of `F'(x)^-1 F(x)`, which is the residual in the units of the unknowns, for any units
+/// of the equations (Deuflhard 2004, Newton Methods for Nonlinear Problems, section 1.4).
 ///
-/// Of a fixed size, so that an error that carries it can be copied.
+/// The size is fixed, so that an error that carries it can be copied.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct History {
     sizes: [f64; Self::KEPT],
@@ -18,7 +18,7 @@ impl Default for History {
 }
 
 impl History {
-    /// So many are kept.
+    /// The number of corrections that are kept.
     pub const KEPT: usize = 6;
 
     /// No corrections yet.
@@ -56,7 +56,7 @@ impl History {
         (self.made - kept..self.made).map(|i| self.sizes[i as usize % Self::KEPT])
     }
 
-    /// The ratio of the last correction to the one before; none of fewer than two.
+    /// The ratio of the last correction to the one before; `None` if there are fewer than two.
     #[must_use]
     pub fn last_ratio(&self) -> Option<f64> {
         let [before, last] = [2, 1].map(|back| self.made.checked_sub(back));
@@ -64,7 +64,7 @@ impl History {
         before.zip(last).map(|(before, last)| size(last) / size(before))
     }
 
-    /// The last correction, where there was one.
+    /// The last correction; `None` if there was none.
     #[must_use]
     pub fn last(&self) -> Option<f64> {
         self.made.checked_sub(1).map(|i| self.sizes[i as usize % Self::KEPT])

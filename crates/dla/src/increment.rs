@@ -42,7 +42,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         (if finite { at } else { self.linearised(v).0 }, self.level(v))
     }
 
-    /// By how much a step with the mean velocity `v` misses the constraint.
+    /// The residual of the constraint in a step with the mean velocity `v`, negated.
     #[inline(always)]
     pub(crate) fn level(&self, v: &[f64; N]) -> [f64; M] {
         let Self { rules, system, t0, h, state, q0, .. } = *self;
@@ -85,7 +85,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         self.momenta_along(v, v)
     }
 
-    /// The same with the nodes placed by the mean velocity `way`, which is near to `v`.
+    /// The momenta with the nodes placed by the mean velocity `way`, which is near to `v`.
     #[inline]
     pub(crate) fn momenta_along(&self, way: &[f64; N], v: &[f64; N]) -> Departure<N> {
         let Self { rules, system, t0, h, q0, .. } = *self;
@@ -107,7 +107,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
     }
 
     /// The largest residual of the equations at the mean velocity, in units of the round-off of its terms: of the momenta at the beginning
-    /// without the reaction, and of the constraints, or of `some` of them where only these are solved for.
+    /// without the reaction, and of the constraints, or only of the rows `some` if only these are solved for.
     #[cold]
     #[inline(never)]
     pub(crate) fn roundings(&self, velocity: &[Rounded; N], some: Option<Rows>) -> f64 {

@@ -5,12 +5,12 @@ use crate::settle::LEAST;
 use crate::unknowns::Unknowns;
 use lagrangian::{AdmissibleBasis, from_fn, mapped};
 
-/// What a step of the general form takes over from the steps before it: predictors and frozen Jacobians.
+/// Predictors and frozen Jacobians that a step of the general form takes over from the steps before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kept {
     /// Whether the next step may be a predicted one.
     ready: bool,
-    /// For how many steps no prediction is tried, and for how many after the next failure.
+    /// The number of steps without a prediction, now and after the next failure.
     pause: u32,
     next_pause: u32,
     /// The formulation of predicted steps.
@@ -89,7 +89,7 @@ impl Kept {
     }
 
     /// Records a step of length `h` that was made without memory, and ended at `q` with the velocity `v`. The next step may be a predicted
-    /// one where the Jacobian and the mass matrix of this one are given; it is solved in the basis where the bases are given too.
+    /// one if the Jacobian and the mass matrix of this step are given; it is solved in the basis if the bases are given too.
     #[inline(never)]
     pub(crate) fn begins<const N: usize, const M: usize>(
         &mut self,
@@ -120,7 +120,7 @@ impl Kept {
                 block = in_bases(&block, start, middle_of_step);
                 mass = in_bases(&mass, end, end);
             }
-            // The Jacobians are near to those of the next step, for which fresh ones would hardly save a correction.
+            // The next step has nearly the same Jacobians; fresh ones would hardly save a correction.
             let renewed = self.block.renew(&block).and(self.mass.renew(&mass));
             self.block.took::<N>(LEAST);
             self.mass.took::<N>(LEAST);
@@ -141,7 +141,7 @@ impl Kept {
     /// Records that a predicted step failed.
     #[cold]
     pub(crate) fn fails(&mut self) {
-        /// A prediction is tried again after so many steps at most.
+        /// A prediction is tried again after at most this number of steps.
         const LONGEST: u32 = 64;
         (self.ready, self.pause) = (false, self.next_pause);
         self.next_pause = LONGEST.min(self.next_pause.saturating_mul(2));
@@ -154,7 +154,7 @@ impl Kept {
         self.q = row(q);
     }
 
-    /// The same in the basis, with the mean velocity `way`, its quasi-velocities, and those at the end.
+    /// As [`Self::ended`], in the basis: with the mean velocity `way`, its quasi-velocities, and the quasi-velocities at the end.
     #[inline(always)]
     pub(crate) fn ended_in_basis<const N: usize>(
         &mut self,
@@ -192,7 +192,7 @@ impl Kept {
         numbers
     }
 
-    /// From what [`save`](Self::save) gave; from anything else as before the first step.
+    /// Restores the numbers of [`save`](Self::save); any other list gives the memory before the first step.
     pub(crate) fn load(numbers: &[f64]) -> Self {
         let mut kept = Self::NONE;
         let (mut numbers, mut filled) = (numbers.iter(), true);
@@ -203,7 +203,7 @@ impl Kept {
         if filled { kept } else { Self::NONE }
     }
 
-    /// Every number of it, in a fixed order.
+    /// Visits every number of it, in a fixed order.
     fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
         let Self { ready, pause, next_pause, unknowns, block, mass, velocities, ways, means, ends, q, v } = self;
         for derivatives in [block, mass] {

@@ -1,10 +1,9 @@
 use lagrangian::{Scalar, ScalarFunction, array};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number that may be an angle whose sine and cosine are known already: what is computed from it as from any other then
-/// asks for them again at no cost.
+/// A number that may be an angle with known sine and cosine: code for any number then gets them from it at no cost.
 ///
-/// Any result of arithmetic is an unknown one.
+/// The result of arithmetic has no known sine and cosine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownAngle<T = f64> {
     /// The number.
@@ -22,7 +21,7 @@ impl<T> KnownAngle<T> {
 }
 
 impl<T> From<T> for KnownAngle<T> {
-    /// A number of which nothing more is known.
+    /// A number without known sine and cosine.
     #[inline(always)]
     fn from(re: T) -> Self {
         Self { re, sin_cos: None }
@@ -73,7 +72,7 @@ impl<T: Scalar> Scalar for KnownAngle<T> {
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = match self.sin_cos {
             Some(known) => known,
-            // Called: inlined in a model, what is seldom needed would be there as often as a known angle is asked.
+            // Called: inlined in a model, this rare case would appear as often as a known angle is asked.
             None => self.re.sin_cos_called(),
         };
         (Self::from(sin), Self::from(cos))

@@ -15,18 +15,19 @@ pub(crate) struct Mean<const N: usize, const M: usize> {
     pub(crate) p1: [f64; N],
     pub(crate) lambda: [f64; M],
     pub(crate) iterations: u32,
-    /// The rows that were solved for, where not all.
+    /// The rows that were solved for, if not all.
     pub(crate) some: Option<Rows>,
     /// The last Jacobian of the momenta at the beginning.
     pub(crate) block: Option<[[f64; N]; N]>,
 }
 
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N, M> {
-    /// The solution that continues the motion, from the velocity `v0` at the beginning. Newton's method starts at the predictor `guess`
-    /// where there is one, and where it fails from there at `v0`.
+    /// The solution that continues the motion, from the velocity `v0` at the beginning. Newton's method starts at the predictor `guess` if
+    /// there is one, and again at `v0` if it fails from there.
     ///
     /// # Errors
-    /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion, [`StepError::Stiff`] where that has no other branch.
+    /// [`StepError::Newton`] if no solution is found, [`StepError::Branch`] if the solution belongs to another motion, [`StepError::Stiff`]
+    /// if the equations have no other branch.
     #[inline]
     pub(crate) fn solve(
         &self,
@@ -34,7 +35,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         v0: [f64; N],
         guess: Option<[f64; N]>,
     ) -> Result<Mean<N, M>, StepError> {
-        // Dependent rows have no sign, and then it is not compared.
+        // Dependent rows have no sign to compare.
         let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
         let time = (self.t0, self.h);
         let (mut search, mut v) = (Corrections::new(self), guess.unwrap_or(v0));
@@ -61,7 +62,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         Ok(Mean { v, p1, lambda, iterations, some, block: search.block() })
     }
 
-    /// Why the solution `v`, which is not found from the velocity `v0`, is refused.
+    /// The error that refuses the solution `v`, which is not found from the velocity `v0`.
     #[cold]
     #[inline(never)]
     fn unfollowed(&self, v: &[f64; N], v0: &[f64; N]) -> StepError {

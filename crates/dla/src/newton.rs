@@ -9,23 +9,22 @@ pub trait Equations<const U: usize> {
     /// The correction `-F'(x)^-1 F(x)` at `x`.
     ///
     /// # Errors
-    /// [`Singular`] where `F'(x)` has no inverse.
+    /// [`Singular`] if `F'(x)` has no inverse.
     fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular>;
 
-    /// The largest residual at `x`, where the last correction was made, in units of the round-off of its terms
-    /// ([`Rounded::roundings`](lagrangian::Rounded::roundings)); none where that is not known. Asked for only where corrections
-    /// stall.
+    /// The largest residual at `x`, from which the last correction was made, in units of the round-off of its terms
+    /// ([`Rounded::roundings`](lagrangian::Rounded::roundings)); `None` if it is not known. Called only if corrections stall.
     fn roundings(&self, _x: &[f64; U]) -> Option<f64> {
         None
     }
 
-    /// Has further linear equations solved with less round-off, where that is possible; whether it is. Asked for where corrections stall
-    /// though the residuals are not round-off.
+    /// Makes later solutions of the linear equations with less round-off. Returns false if that is not possible. Called if corrections
+    /// stall although the residuals are not round-off.
     fn refine(&mut self) -> bool {
         false
     }
 
-    /// A correction below this leads to no other solution; zero where nothing is known of that.
+    /// A correction below this leads to no other solution; zero if no such bound is known.
     #[inline(always)]
     fn near(&self) -> f64 {
         0.0
@@ -44,15 +43,15 @@ pub(crate) trait BlockEquations<const U: usize, const S: usize> {
     /// The correction `-F'(x)^-1 F(x)` at `x`.
     fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular>;
 
-    /// The largest residual at `x`, where the last correction was made, in units of the round-off of its terms.
+    /// The largest residual at `x`, from which the last correction was made, in units of the round-off of its terms.
     fn roundings(&self, x: &[[f64; U]; S]) -> Option<f64>;
 
-    /// Has further linear equations solved with less round-off, where that is possible; whether it is.
+    /// Makes later solutions of the linear equations with less round-off. Returns false if that is not possible.
     fn refine(&mut self) -> bool {
         false
     }
 
-    /// A correction below this leads to no other solution; zero where nothing is known of that.
+    /// A correction below this leads to no other solution; zero if no such bound is known.
     #[inline(always)]
     fn near(&self) -> f64 {
         0.0
@@ -138,7 +137,7 @@ pub enum NewtonError {
     /// The iteration limit is reached.
     #[error("no convergence in {iterations} iterations; the last relative correction is {correction:.2e}")]
     IterationLimit {
-        /// How many were made.
+        /// The number of iterations made.
         iterations: u32,
         /// The largest correction, relative to the largest component there was.
         correction: f64,
@@ -163,7 +162,7 @@ impl NewtonError {
 }
 
 impl Newton {
-    /// Corrects `x` until every component has converged; the number of iterations.
+    /// Corrects `x` until every component has converged; returns the number of iterations.
     ///
     /// # Errors
     /// [`NewtonError`]; `x` is then the last iterate.
@@ -176,7 +175,7 @@ impl Newton {
         self.search(equations, x).map(|found| found.iterations)
     }
 
-    /// The same, with how the solution was found.
+    /// As [`Self::solve`], and tells how the solution was found.
     #[inline]
     pub(crate) fn search<const U: usize>(
         &self,
@@ -186,7 +185,7 @@ impl Newton {
         self.search_blocks(&mut Single(equations), std::array::from_mut(x))
     }
 
-    /// The same for unknowns in blocks.
+    /// As [`Self::search`], for unknowns in blocks.
     #[inline]
     pub(crate) fn search_blocks<const U: usize, const S: usize>(
         &self,

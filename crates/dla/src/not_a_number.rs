@@ -2,16 +2,16 @@ use lagrangian::{AdmissibleBasis, Called, Gradient, Reduced, System, from_fn, qu
 use std::fmt;
 use thiserror::Error;
 
-/// A function of a system that is not finite, or has no finite derivative, where a step has to know it.
+/// A function of a system that is not finite, or has no finite derivative, although a step needs it.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub struct NotANumber {
     /// The function.
     pub function: SystemFunction,
-    /// What of it is not finite.
+    /// The value or derivative that is not finite.
     pub derivative: Derivative,
     /// The time (s).
     pub time: f64,
-    /// Whether it is so where the step begins: no shorter step avoids it then.
+    /// Whether it is so at the beginning of the step: no shorter step avoids it then.
     pub at_node: bool,
 }
 
@@ -25,7 +25,7 @@ pub enum SystemFunction {
         /// The coordinate.
         coordinate: usize,
     },
-    /// What a row of the constraint, `A v + b`, has before the velocity of a coordinate.
+    /// The factor of a velocity in a row of the constraint, `A v + b`.
     Constraint {
         /// The row.
         row: usize,
@@ -47,21 +47,21 @@ pub enum SystemFunction {
         /// The row.
         row: usize,
     },
-    /// What a vector of the basis of admissible velocities has in the place of a coordinate.
+    /// The component of a vector of the basis of admissible velocities along a coordinate.
     Basis {
         /// The vector.
         vector: usize,
         /// The coordinate.
         coordinate: usize,
     },
-    /// The acceleration of a quasi-velocity, where the system gives it by hand.
+    /// The acceleration of a quasi-velocity, if the system gives it by hand.
     ReducedMotion {
         /// The quasi-velocity.
         quasi_velocity: usize,
     },
 }
 
-/// What a function of a system depends on. Coordinates are counted from 0.
+/// A variable of a function of a system. Coordinates are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variable {
     /// The time.
@@ -84,7 +84,8 @@ pub enum Derivative {
 }
 
 impl NotANumber {
-    /// The same of a part of a larger system, which has coordinate `i` of the part as `coordinate(i)`, and its rows from `row` on.
+    /// The error of a part of a larger system, in the numbers of the whole: coordinate `i` of the part is `coordinate(i)`, and its rows
+    /// begin at `row`.
     #[must_use]
     pub fn renumbered(mut self, coordinate: impl Fn(usize) -> usize, row: usize) -> Self {
         match &mut self.function {
@@ -157,13 +158,13 @@ impl fmt::Display for NotANumber {
     }
 }
 
-/// A number with a derivative in each of two variables, and the second one in both; or with none in one that it does not depend on,
-/// where zeros times an infinity would be no numbers.
+/// A number with a derivative in each of two variables, and the second derivative in both. It has no derivative in a variable that it does
+/// not depend on: zero times infinity would be NaN.
 type AnyNumber = Called<Twice>;
 type Twice = Gradient<Once, 1>;
 type Once = Gradient<f64, 1>;
 
-/// What the equations of motion are made of, in the order in which it is looked for: first what every method needs.
+/// The parts of the equations of motion in the order in which they are examined: first the parts that every method needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum DerivativeOrder {
     /// Values of forces and constraints, first derivatives of the Lagrangian.
@@ -176,8 +177,8 @@ enum DerivativeOrder {
 
 /// The first function of the system, at a place and a time that are finite, that is not finite or has no finite derivative there.
 ///
-/// Of each the derivatives are looked at that the equations of a step may need: second ones of the Lagrangian, first ones of the
-/// others. Those in velocities come first, then those in coordinates and in time.
+/// It examines the derivatives that the equations of a step may need: second ones of the Lagrangian, first ones of all other functions.
+/// Derivatives in velocities come first, then derivatives in coordinates and in time.
 #[must_use]
 #[cold]
 #[inline(never)]
@@ -247,7 +248,7 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(
                     DerivativeOrder::Values => (!value.is_finite(), Derivative::Value),
                 };
                 if missing && found.is_none() {
-                    // Of what is itself not finite no derivative is told.
+                    // A function that is itself not finite is reported without a derivative.
                     let derivative = if value.is_finite() { derivative } else { Derivative::Value };
                     found = Some(NotANumber { function, derivative, time, at_node: true });
                 }

@@ -9,7 +9,7 @@ pub trait OneStep<const N: usize, const M: usize> {
     /// Moves `state` from time `t` to `t + h`.
     ///
     /// # Errors
-    /// [`StepError`] where the step has no solution that the method accepts; `state` is then unchanged.
+    /// [`StepError`] if the step has no solution that the method accepts; `state` is then unchanged.
     fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,
@@ -18,8 +18,8 @@ pub trait OneStep<const N: usize, const M: usize> {
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError>;
 
-    /// As [`step`](Self::step), but looks where the steps end that the method makes of its own within it, all but the last, and ends there
-    /// after a `Break`: the time (s) at which it ended then, and none where it came to the end.
+    /// As [`step`](Self::step), and shows the ends of the steps that the method makes of its own within it, all but the last. A `Break`
+    /// ends the step there; then the time (s) of that end is returned, otherwise `None`.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -33,25 +33,25 @@ pub trait OneStep<const N: usize, const M: usize> {
         Ok((self.step(system, t, h, state)?, None))
     }
 
-    /// What it remembers besides the state, for a checkpoint: nothing, if it is the map that it should be.
+    /// The memory of the method besides the state, for a checkpoint; empty if the next step depends on the state alone.
     fn memory(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Remembers again what [`memory`](Self::memory) gave when the run was at `state`.
+    /// Restores the memory that [`memory`](Self::memory) gave when the run was at `state`.
     fn recall(&mut self, _memory: &[f64], _state: &State<N>) {}
 
-    /// Asks for the work of the steps to come, in [`StepReport::work`], of what may do some. A method of high order, or with steps of its
-    /// own, integrates the power as it does the motion; nobody else can with its accuracy. The others have none to report: their order is
-    /// not above that of [`Work`](crate::Work).
+    /// Asks for the work that these sources do in the steps to come, in [`StepReport::work`]. A method of high order, or with steps of its
+    /// own, integrates the power as it does the motion; no observer can with its accuracy. Other methods report none: their order is not
+    /// above the order of [`Work`](crate::Work).
     fn measure_work(&mut self, _sources: PowerSources) {}
 
-    /// Shows the time (s) and the state where steps end that the method makes of its own within a step from `t` to `t + h`: all but
-    /// the last, which ends with the step; `Break` asks for no more of them. Nothing for a method whose steps are those of the run.
+    /// Shows the time (s) and the state at the ends of the steps that the method makes of its own within a step from `t` to `t + h`: all
+    /// but the last, which ends with the step; `Break` asks for no more of them. A method without steps of its own shows nothing.
     ///
-    /// It is for who looks inside steps, as [`Watch`](crate::Watch) does. The step is made once more, so that one at which nobody
-    /// looks costs nothing. `memory` is what the method [remembers](Self::memory) before the step, and then after it; it is empty
-    /// before the first, and means nothing after a `Break`.
+    /// It serves observers that look inside steps, as [`Watch`](crate::Watch) does. The step is made once more, so that a step without such
+    /// an observer costs nothing. `memory` holds the [memory](Self::memory) of the method before the step, and then after it; it is empty
+    /// before the first step, and has no meaning after a `Break`.
     ///
     /// # Errors
     /// As [`step`](Self::step), after what was shown until then.
@@ -115,28 +115,28 @@ impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, 
 /// Looks at the end of a step that a method makes of its own, a time (s) and a state.
 pub type OwnStep<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> ControlFlow<()> + 'a;
 
-/// What a step did besides moving the state.
+/// The report of a step, besides the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepReport<const M: usize> {
-    /// Impulses of the constraints at the two ends of the step (N s); the constraint acts with
-    /// `A(q0)' impulses[0] + A(q1)' impulses[1]`. Zero where a method does not compute them.
+    /// Impulses of the constraints at the two ends of the step (N s); the constraint acts with `A(q0)' impulses[0] + A(q1)' impulses[1]`.
+    /// Zero if a method does not compute them.
     pub impulses: [[f64; M]; 2],
     /// Newton iterations of the step's equations; 0 for an explicit method.
     pub iterations: u32,
-    /// The work that was done over the step (J), for a method whose energy balance knows it, or that was [asked](OneStep::measure_work) to
-    /// integrate it.
+    /// The work done over the step (J), by a method whose energy balance knows it, or that was [asked](OneStep::measure_work) to integrate
+    /// it.
     pub work: Option<f64>,
 }
 
 impl<const M: usize> StepReport<M> {
-    /// The report of a step of which nothing but the iterations is known.
+    /// The report of a step that reports only its iterations.
     #[must_use]
     #[inline(always)]
     pub fn of(iterations: u32) -> Self {
         Self { impulses: [[0.0; M]; 2], iterations, work: None }
     }
 
-    /// What this step and a further one did together.
+    /// The sum of the reports of this step and the next.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         let sum = |end: usize| lagrangian::from_fn(|k| self.impulses[end][k] + next.impulses[end][k]);
@@ -184,9 +184,9 @@ pub enum StepError {
     /// Newton's method, or the fixed-point iteration in its place, failed.
     #[error("{stage}: {source}")]
     Newton {
-        /// On which equations.
+        /// The equations that failed.
         stage: Stage,
-        /// How.
+        /// How they failed.
         #[source]
         source: NewtonError,
     },
@@ -209,13 +209,14 @@ pub enum StepError {
     Slips {
         /// The row, from zero.
         row: usize,
-        /// What it misses.
+        /// The residual of the row.
         residual: f64,
     },
     /// A function of the system, or a derivative of one, is not a number or not finite.
     #[error(transparent)]
     NotANumber(#[from] NotANumber),
-    /// The force on a coordinate jumps where the system comes to rest: beyond there is no motion, however short the step.
+    /// The force on a coordinate jumps at the velocity zero, and the system comes to rest there: beyond there is no motion, however short
+    /// the step.
     #[error(
         "the force on coordinate {coordinate} jumps where the velocity changes its direction, as `sign(v)` does, and the motion comes to \
         rest there: no step is short enough; write a smooth function of the velocity, as `tanh(v/eps)` with a small speed `eps`, or end the \
@@ -228,7 +229,7 @@ pub enum StepError {
     /// The method cannot do this system.
     #[error("{reason}")]
     Unsupported {
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
     /// The system has more coordinates and constraints than the method has room for on the stack; no step was begun.
@@ -241,9 +242,9 @@ pub enum StepError {
         coordinates: usize,
         /// `M`.
         constraints: usize,
-        /// What the step would take of the stack, as [`StackUse`](crate::StackUse) counts it (bytes).
+        /// The stack that the step would take, as [`StackUse`](crate::StackUse) counts it (bytes).
         bytes: usize,
-        /// What it may take (bytes).
+        /// The limit (bytes).
         limit: usize,
     },
     /// The step of an energy-preserving method changes the energy by more than the work of the forces.
@@ -254,13 +255,13 @@ pub enum StepError {
     Energy {
         /// The change (J).
         defect: f64,
-        /// What rounding may do (J).
+        /// The change that rounding explains (J).
         bound: f64,
     },
-    /// Forces or constraints jump inside the step, across which no method has an order.
+    /// Forces or constraints jump inside the step; no method has its order across a jump.
     #[error("forces or constraints jump at t = {} s, inside the step: the run has fewer steps than pieces between jumps", Shown(*time))]
     Jump {
-        /// When (s).
+        /// The time of the jump (s).
         time: f64,
     },
     /// The equations of the step have a solution, but it belongs to another motion, or cannot be shown to continue this one.
@@ -281,7 +282,7 @@ pub enum StepError {
     Turn {
         /// The coordinate that turns most, from zero.
         coordinate: usize,
-        /// By how much the constraint would turn (rad).
+        /// The angle by which the constraint would turn (rad).
         turn: f64,
         /// The length of the step, or of the part of one that a composition makes (s).
         step: f64,
@@ -301,10 +302,10 @@ pub enum StepError {
          may hold everywhere"
     )]
     LeavesBasis,
-    /// Forces that depend on the velocity are too stiff for the step: it would drive the velocity past where they vanish.
+    /// Forces that depend on the velocity are too stiff for the step: they would drive the velocity past the value at which they vanish.
     #[error("the step is too long: the braking forces would reverse the velocity; a step {} times shorter resolves them", Shown(part.recip()))]
     Overshoot {
-        /// The longest part of the step for which they do not.
+        /// The longest part of the step in which they do not.
         part: f64,
     },
     /// An adaptive method does not meet its tolerance within a step.
@@ -313,7 +314,7 @@ pub enum StepError {
     Tolerance {
         /// The steps tried, refused ones included.
         tries: u32,
-        /// What the next one would be (s).
+        /// The length of the next one (s).
         step: f64,
     },
     /// A coordinate or a velocity became infinite or not a number.
@@ -323,7 +324,7 @@ pub enum StepError {
     /// [`Halved`](crate::Halved)); asked only of steps that may be made in parts.
     #[error("the step does not resolve the motion: two steps of half the length end elsewhere")]
     Unresolved,
-    /// Whoever waits has asked for the end ([`Stop`](crate::Stop)); no run fails by that, it ends before the step.
+    /// The caller has asked for the end ([`Stop`](crate::Stop)); no run fails by that, it ends before the step.
     #[error("ended before it was done")]
     Stopped,
     /// The step of an assembly of many elements failed.

@@ -2,7 +2,7 @@ use crate::{Checkpoint, CheckpointError};
 use lagrangian::mul_add;
 use std::fmt;
 
-/// So many steps give a predictor of order 7 in the step.
+/// Number of steps that give a predictor of order 7 in the step.
 const USUAL: usize = 7;
 /// From fewer the predictor is worse than that from the last acceleration.
 const FEWEST: usize = 3;
@@ -121,14 +121,14 @@ impl<const N: usize, const K: usize> Past<N, K> {
         self.rows().map_or(&[], |rows| &rows[..self.made])
     }
 
-    /// The prediction for one more step of length `h`; none from fewer than three steps of that length.
+    /// The prediction for one more step of length `h`; `None` from fewer than three steps of that length.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn next(&self, h: f64) -> Option<[f64; N]> {
         (self.step == h && self.made >= FEWEST).then_some(self.next)
     }
 
-    /// The same from however few.
+    /// As [`Self::next`], from any number of steps of that length.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn following(&self, h: f64) -> Option<[f64; N]> {
@@ -156,7 +156,7 @@ impl<const N: usize, const K: usize> Past<N, K> {
         checkpoint.put("past", &[steps.as_slice(), of_steps].concat());
     }
 
-    /// What [`save`](Self::save) wrote.
+    /// The past that [`save`](Self::save) wrote.
     pub(crate) fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let mut past = Self::new();
         if let Some((step, increments)) = checkpoint.list("past")?.split_first() {

@@ -6,10 +6,10 @@ use lagrangian::{Dual, Rounded, RowSpace, Saddle, from_fn, mapped};
 /// The increment of a step with its end projected onto the constraints on positions, `g(q1) = 0`, in the kinetic metric: Newton's method
 /// with the gradients at the iterate. Without such constraints nothing is done.
 ///
-/// Of dependent rows only independent ones are used.
+/// If rows are dependent, only independent ones are used.
 ///
 /// # Errors
-/// [`StepError::Newton`] where no such place is found.
+/// [`StepError::Newton`] if no such place is found.
 #[inline(always)]
 pub(crate) fn onto_positions<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,

@@ -3,8 +3,8 @@ use lagrangian::quadrature::gauss_legendre;
 use lagrangian::{PowerSources, from_fn};
 use std::sync::LazyLock;
 
-/// The power of all that may do work on a system (W): `F . v - dL/dt - lambda . b`, that of the generalised forces, of explicit time in the
-/// Lagrangian, and of what moves an affine constraint. It is not a number where the equations of motion do not determine the multipliers.
+/// The power of all sources of work on a system (W), `F . v - dL/dt - lambda . b`: of the generalised forces, of explicit time in the
+/// Lagrangian, and of the drive of affine constraints. NaN if the equations of motion do not determine the multipliers.
 pub fn power<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     sources: PowerSources,
@@ -32,8 +32,8 @@ pub fn power<const N: usize, const M: usize>(
 
 /// The mean of a power over a step, by the weights of a quadrature rule, whose sum is one.
 ///
-/// A node where the power is not a number, because forces or multipliers are not determined at that one place, takes the mean of the
-/// others: so the work of all later steps stays known.
+/// If the power at a node is not a number, because forces or multipliers are not determined at that one place, the node takes the mean of
+/// the other nodes: so the work of all later steps stays known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeanPower {
     weighted: f64,
@@ -63,7 +63,7 @@ impl MeanPower {
 }
 
 /// The work over a step between two places, times, configurations and velocities: [`power`] with four Gauss nodes along the polynomial of
-/// degree five that has the accelerations of both ends too, or of degree three where an end has none.
+/// degree five that has the accelerations of both ends too, or of degree three if an end has none.
 pub(crate) fn work_between<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     sources: PowerSources,
@@ -82,7 +82,7 @@ pub(crate) fn work_between<const N: usize, const M: usize>(
     if !powered {
         return 0.0;
     }
-    // Those of the cubic where an end has none.
+    // An end without accelerations takes the acceleration of the cubic.
     let acceleration = |t: f64, q: &[f64; N], v: &[f64; N], other: &[f64; N], side: f64| match system.motion(t, q, v) {
         Ok(motion) => motion.acceleration,
         Err(_) => from_fn(|i| side * (6.0 * (q1[i] - q0[i]) / h - 4.0 * v[i] - 2.0 * other[i]) / h),

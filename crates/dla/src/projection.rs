@@ -22,8 +22,8 @@ pub(crate) struct Projection<'a, const N: usize, const M: usize> {
 pub(crate) struct Projected<const N: usize, const M: usize> {
     pub(crate) v1: [f64; N],
     pub(crate) mu: [f64; M],
-    /// The mass matrix, where they were found as those of a Lagrangian that is quadratic in the velocities, with constraints
-    /// that are affine.
+    /// The mass matrix, if one correction and a simplified one were enough, as for a Lagrangian that is quadratic in the velocities with
+    /// affine constraints.
     pub(crate) mass: Option<[[f64; N]; N]>,
 }
 
@@ -38,7 +38,7 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
         Self { system, t1, q1, p1, basis, some: None, mu: [0.0; M], refined: false }
     }
 
-    /// For some of the rows alone, where they are given.
+    /// Restricts the equations to some of the rows, if they are given.
     #[inline(always)]
     pub(crate) fn of(mut self, some: Option<Rows>) -> Self {
         self.some = some;
@@ -64,8 +64,8 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
         Ok(Projected { v1, mu: self.mu, mass: None })
     }
 
-    /// The same by one correction and a simplified one, which are enough for a Lagrangian that is quadratic in the velocities. Both are
-    /// made in the same configuration, so the rows and the mass matrix are evaluated once.
+    /// As [`Self::solve`], by one correction and a simplified one, which are enough for a Lagrangian that is quadratic in the velocities.
+    /// Both are made in the same configuration, so the rows and the mass matrix are evaluated once.
     ///
     /// Not inlined, so that its matrices are not on the stack while the mean velocity is solved for.
     #[inline(never)]
@@ -99,11 +99,11 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
     }
 }
 
-/// The velocity that meets the constraints, after the impulse that they give to the velocity `v`: `L_v(q, v1) = L_v(q, v) + A' mu`.
-/// Rows may be dependent where they are consistent.
+/// The velocity that meets the constraints, after the impulse that they give to the velocity `v`: `L_v(q, v1) = L_v(q, v) + A' mu`. Rows
+/// may be dependent if they are consistent.
 ///
 /// # Errors
-/// [`StepError::Newton`] where the constraints do not determine it, [`StepError::Dependent`] where rows drop or disagree.
+/// [`StepError::Newton`] if the constraints do not determine the velocity, [`StepError::Dependent`] if rows drop or disagree.
 pub(crate) fn project<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     t: f64,

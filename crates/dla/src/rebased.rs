@@ -3,37 +3,38 @@ use crate::{Dependent, Mechanics, OneStep, OwnStep, State, StepError, StepReport
 use lagrangian::{PowerSources, from_fn, mapped};
 use std::ops::ControlFlow;
 
-/// A method on systems whose basis of admissible velocities holds near a configuration only: the basis is changed at nodes, where it
+/// A method on systems whose basis of admissible velocities holds near a configuration only: the basis is changed at the nodes at which it
 /// becomes badly conditioned.
 ///
 /// Within a step the basis is one and the same, so that a method has the order that it has in any basis; a method that makes steps of its
-/// own changes it between these too. Where the step fails, bodies may have turned out of the neighbourhood in which the basis holds: the step is
-/// made again in the basis that is best in its middle, and then in that of its end. Of a system whose basis holds everywhere the method makes its steps by itself.
+/// own changes the basis between these too. If a step fails, bodies may have turned out of the neighbourhood in which the basis holds: the
+/// step is made again in the basis that is best in its middle, and then in the basis that is best at its end. If the basis of a system
+/// holds everywhere, the method makes its steps by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rebased<Method> {
     method: Method,
-    /// The number of the basis; none before the first step.
+    /// The number of the basis; zero before the first step.
     basis: u64,
-    /// Whether bases of the system are local; not known before the first step.
+    /// Whether bases of the system are local; `None` before the first step.
     local: Option<bool>,
     /// Whether steps ask for the basis between their ends too.
     along: bool,
 }
 
 impl<Method> Rebased<Method> {
-    /// The method, with its basis changed where the system asks for that.
+    /// The method, with its basis changed when the system asks for that.
     pub fn new(method: Method) -> Self {
         Self { method, basis: 0, local: None, along: false }
     }
 
-    /// The same of a method whose steps ask for the basis between their ends too: it is to be well conditioned there.
+    /// The method, if its steps ask for the basis between their ends too: the basis must be well conditioned there.
     #[must_use]
     pub fn along(self) -> Self {
         Self { along: true, ..self }
     }
 }
 
-/// Within a step a method makes no more steps of its own, in all bases together.
+/// Maximum number of steps that a method makes of its own within a step, in all bases together.
 const MOST_STEPS: u32 = 100_000;
 
 /// Whether the basis of this number is well conditioned at a node.
@@ -44,7 +45,7 @@ fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u
 }
 
 impl<Method> Rebased<Method> {
-    /// The step, or as much of it as the basis holds in which it begins, and then the time at which that ends; counts the steps that the method
+    /// Makes the step, or the part of it in which the basis holds; returns the end time of that part. Counts the steps that the method
     /// makes of its own.
     fn part<const N: usize, const M: usize>(
         &mut self,
@@ -100,7 +101,7 @@ impl<Method> Rebased<Method> {
         holds(system, self.basis, t + 0.5 * h, &middle) && holds(system, self.basis, t + h, end.q())
     }
 
-    /// The same in the basis of that number where it is good at a time and a place, else in the one that is best there.
+    /// As [`Self::part`], in the basis `number` if it is good at a time and a place, else in the basis that is best there.
     fn part_near<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
@@ -119,7 +120,7 @@ impl<Method> Rebased<Method> {
         let known = *basis;
         system.near(time, place, number, &mut |number, near| {
             if number != known {
-                // What is remembered is in the other basis.
+                // The memory belongs to the other basis.
                 method.recall(&[], state);
                 state.advance(&[0.0; N], *state.v(), None);
             }
@@ -162,7 +163,7 @@ where
             return self.method.step(system, t, h, state);
         }
         let (before, basis) = (*state, self.basis);
-        // Of a step in one part the length is that of the step, to the last bit.
+        // A step in one part has the length of the step, to the last bit.
         let (mut total, mut rest) = (None::<StepReport<M>>, (t, h));
         let mut inner = 0;
         loop {
@@ -172,7 +173,7 @@ where
             };
             let ended = self.local == Some(true) && matches!(found, Ok((_, None)));
             let whole = ended.then(|| left_branch(system, (t, h), &before, state)).flatten();
-            // Seen over the whole step too: in steps of the method's own, and where bases change, the motion may turn little by little.
+            // Seen over the whole step too: in own steps of the method, and if bases change, the motion may turn little by little.
             let found = whole.map_or(found, |dropped| Err(dropped.into()));
             match found {
                 Ok((report, end)) => {
@@ -183,7 +184,7 @@ where
                 Err(error) => {
                     *state = before;
                     if total.is_some() || self.basis != basis {
-                        // What the method remembers is of another place or in another basis.
+                        // The memory of the method belongs to another place or another basis.
                         self.basis = basis;
                         self.method.recall(&[], state);
                     }
@@ -193,7 +194,7 @@ where
         }
     }
 
-    /// What the method remembers, and behind it the number of the basis in which that is.
+    /// The memory of the method, and behind it the number of the basis to which the memory belongs.
     fn memory(&self) -> Vec<f64> {
         numbered(self.method.memory(), self.basis as f64)
     }
@@ -252,7 +253,7 @@ where
     }
 }
 
-/// A memory with the number of a basis behind it; nothing where there is neither.
+/// A memory with the number of a basis behind it; empty if there is neither.
 fn numbered(mut memory: Vec<f64>, basis: f64) -> Vec<f64> {
     if !memory.is_empty() || basis != 0.0 {
         memory.push(basis);

@@ -13,16 +13,16 @@ pub struct ReducedField {
     pub derivative: DMatrix<f64>,
 }
 
-/// How many directions a [`Seeded`] number carries.
+/// Number of directions that a [`Seeded`] number carries.
 const SEEDS: usize = 8;
 
-/// The reduced equations of a system at one point, none where it has no basis of admissible velocities.
+/// The reduced equations of a system at one point; `None` if it has no basis of admissible velocities.
 ///
 /// The equations of motion `d/dt L_v - L_q - F = A' lambda` are linear in `(xi', lambda)`; they are solved for these, and
 /// differentiated implicitly, on the numbers of [`Gradients`]: one code for every system.
 ///
 /// # Errors
-/// [`Singular`] where the mass matrix or the constraint is degenerate.
+/// [`Singular`] if the mass matrix or the constraint is degenerate.
 pub fn reduced_field<const N: usize, const M: usize>(
     model: &dyn Gradients<N, M>,
     t: f64,

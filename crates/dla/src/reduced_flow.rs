@@ -1,8 +1,8 @@
 use crate::SeededMechanics;
 use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 
-/// The reduced equations `q' = W xi + v_b` and `xi'` with derivatives in eight directions: by hand where the system knows them, else from its
-/// Lagrangian; none where it has no basis, or they are degenerate.
+/// The reduced equations `q' = W xi + v_b` and `xi'` with derivatives in eight directions: by hand if the system knows them, else from its
+/// Lagrangian; `None` if the system has no basis, or if its equations are degenerate.
 pub(crate) fn reduced_flow<const N: usize, const M: usize>(
     system: &dyn SeededMechanics<N, M>,
     t: f64,

@@ -3,10 +3,10 @@ use lagrangian::linear::larger;
 
 /// One coordinate of a step that was made whole, and again in two halves.
 ///
-/// A method may make a step that has little to do with the motion: the midpoint rule has a solution in a bowl that swings sixteen
-/// times within the step, and one for a sleigh that turns a million times. Such a step shows in one of two ways: its halves lead elsewhere;
-/// or, where they make the same mistake, the velocities at the nodes do not integrate to the distance. Every coordinate is tested by
-/// itself, so that a small one beside large ones is resolved too.
+/// A method may make a step that has little to do with the motion: the midpoint rule has a solution in a bowl that swings sixteen times
+/// within the step, and one for a sleigh that turns a million times. Such a step shows in one of two ways: its halves lead elsewhere; or,
+/// if they make the same mistake, the velocities at the nodes do not integrate to the distance. Every coordinate is tested by itself, so
+/// that a small coordinate beside large ones is resolved too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Halved {
     /// The velocities before the step, after its first half, after the second, and after the whole.
@@ -28,7 +28,7 @@ impl Halved {
     const WAY: f64 = 1e-2;
     /// A velocity below this part of the largest of all is not tested.
     const NOTHING: f64 = 1e-12;
-    /// A distance of so many roundings of the largest coordinate counts as zero.
+    /// A distance of at most this number of roundings of the largest coordinate counts as zero.
     const ROUNDINGS: f64 = 8.0;
     /// A smaller number has lost its digits.
     const LEAST: f64 = 1e-290;
@@ -39,7 +39,7 @@ impl Halved {
         Self::NOTHING * v + Self::ROUNDINGS * f64::EPSILON * q / h.abs() + Self::LEAST
     }
 
-    /// Whether a step of length `h` resolves the coordinate, where `all` is the largest velocity of all coordinates and
+    /// Whether a step of length `h` resolves the coordinate; `all` is the largest velocity of all coordinates, and
     /// [`nothing`](Self::nothing) the velocity that counts as zero.
     #[must_use]
     pub fn is_resolved(&self, h: f64, all: f64, nothing: f64) -> bool {
@@ -54,7 +54,7 @@ impl Halved {
     /// Whether a step from time `t` to `t + h` that led from `before` to `after` resolves the motion; `make` makes the halves.
     ///
     /// # Errors
-    /// [`StepError::Unresolved`] where it does not, and what `make` fails with.
+    /// [`StepError::Unresolved`] if it does not, and the errors of `make`.
     pub fn resolves(
         (t, h): (f64, f64),
         before: &AnyState,

@@ -1,22 +1,22 @@
 use crate::{ClosedStepError, RunError, StepError};
 
-/// Looks at runs of one motion with ever shorter steps: whether the motion itself leaves the range of numbers, which no step prevents.
+/// Detects, from runs with ever shorter steps, a motion that itself leaves the range of numbers, which no step prevents.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Runaway {
-    /// When the last run failed (s).
+    /// The time at which the last run failed (s).
     last: Option<f64>,
-    /// How many runs in a row agree with the one before.
+    /// Number of runs in a row that agree with the one before.
     agree: u32,
 }
 
 impl Runaway {
-    /// So many runs that agree are enough.
+    /// Number of agreeing runs that is enough.
     const ENOUGH: u32 = 2;
-    /// They agree within so many steps of the longer kind.
+    /// Largest difference of the times of failure of runs that agree, in steps of the present run.
     const STEPS: f64 = 8.0;
 
-    /// Whether the failures so far and this one, of a run with that step (s), show it: their numbers are not finite from the same time on,
-    /// after more than `fine` steps.
+    /// Whether the failures so far and this one, of a run with the step `step` (s), show such a motion: their numbers are not finite from
+    /// the same time on, after more than `fine` steps.
     pub fn sees(&mut self, error: &RunError, step: f64, fine: u64) -> bool {
         let late = is_beyond(&error.source) && error.step > fine;
         let same = self.last.is_some_and(|last| (last - error.time).abs() <= Self::STEPS * step.abs());

@@ -17,9 +17,9 @@ pub(crate) struct Settle<const N: usize> {
 }
 
 impl<const N: usize> Settle<N> {
-    /// Corrects `x` until the equations are met, where `correction` gives none, or until every component has converged by the rule
-    /// of [`Newton`](crate::Newton) for simplified corrections. Gives the number of evaluations, that before the first correction
-    /// included; none where corrections do not shrink as they should.
+    /// Corrects `x` until the equations are met (`correction` then gives `None`), or until every component has converged by the rule of
+    /// [`Newton`](crate::Newton) for simplified corrections. Returns the number of evaluations, including the one before the first
+    /// correction; `None` if corrections do not shrink as they should.
     #[inline(always)]
     pub(crate) fn search(
         &self,

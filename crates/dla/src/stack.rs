@@ -1,10 +1,10 @@
 use crate::StepError;
 
-/// What a step takes of the stack of its thread, in numbers of eight bytes: nothing in a step is allocated, so the arrays of a
-/// large system are all there.
+/// The stack that a step takes of its thread, in numbers of eight bytes: nothing in a step is allocated, so the arrays of a large system
+/// are all there.
 ///
-/// The counts of a method are fitted to what its steps were seen to take, with a tenth and more to spare. A method compares them
-/// with [`StackUse::LIMIT`] before its first array is made:
+/// The counts of a method are fitted to the measured use of its steps, with a tenth and more to spare. A method compares them with
+/// [`StackUse::LIMIT`] before its first array is made:
 ///
 /// ```
 /// use dla::{StackUse, StepError};
@@ -30,21 +30,21 @@ pub struct StackUse {
 }
 
 impl StackUse {
-    /// A step may take so much (bytes): three quarters of the 2 MiB that a thread has unless it is given more, as those of tests and
-    /// of thread pools. The rest is the caller's.
+    /// Largest stack of a step (bytes): three quarters of the 2 MiB that a thread has by default, in tests and in thread pools too. The
+    /// rest is the caller's.
     pub const LIMIT: usize = 3 << 19;
 
-    /// What a step takes of a system with `N` coordinates and `M` constraints (bytes).
+    /// The stack of a step on a system with `N` coordinates and `M` constraints (bytes).
     #[must_use]
     pub const fn bytes<const N: usize, const M: usize>(self) -> usize {
-        /// What does not depend on the system.
+        /// The part that does not depend on the system.
         const BASE: usize = 1 << 16;
         /// The numbers of each coordinate that carry a block of second derivatives, `(8 + 1)^2`, in a few arrays.
         const CARRIED: usize = 4 * 81;
         BASE + size_of::<f64>() * N * (CARRIED + self.squares * N + self.rows * M)
     }
 
-    /// Whether that is more than the limit.
+    /// Whether the stack of a step exceeds the limit.
     #[must_use]
     pub const fn exceeds<const N: usize, const M: usize>(self) -> bool {
         self.bytes::<N, M>() > Self::LIMIT

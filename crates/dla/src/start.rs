@@ -13,7 +13,7 @@ pub struct Start<const N: usize> {
     pub q: [f64; N],
     /// Velocity.
     pub v: [f64; N],
-    /// How far the configuration was moved, `sqrt(dq' M dq)`; zero where it was consistent to rounding.
+    /// How far the configuration was moved, `sqrt(dq' M dq)`; zero if it was consistent to rounding.
     pub moved: f64,
     /// How far the velocity was changed, `sqrt(dv' M dv)`.
     pub changed: f64,
@@ -21,13 +21,13 @@ pub struct Start<const N: usize> {
 
 /// The start that meets all constraints and is nearest to a given one in the kinetic metric.
 ///
-/// The configuration is the stationary point of `(q1 - q)' M(q) (q1 - q)` on `g(q1, t) = 0`, found from the given one by
-/// Newton's method; the velocity is that of `L_v(q1, v1) = L_v(q1, v) + A' mu` with `A v1 + b = 0`, which is the nearest where
-/// the Lagrangian is quadratic in velocities. Rows may be dependent where they are consistent.
+/// The configuration is the stationary point of `(q1 - q)' M(q) (q1 - q)` on `g(q1, t) = 0`, found from the given one by Newton's method.
+/// The velocity solves `L_v(q1, v1) = L_v(q1, v) + A' mu` with `A v1 + b = 0`, and is the nearest if the Lagrangian is quadratic in
+/// velocities. Rows may be dependent if they are consistent.
 ///
 /// # Errors
-/// [`StepError::Newton`] where there is none nearby, or positions contradict one another; [`StepError::Dependent`] where the rank of the constraints drops there,
-/// or their velocities contradict one another.
+/// [`StepError::Newton`] if there is none nearby, or positions contradict one another; [`StepError::Dependent`] if the rank of the
+/// constraints drops there, or their velocities contradict one another.
 pub fn consistent_start<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     t: f64,
@@ -57,7 +57,7 @@ pub fn consistent_start<const N: usize, const M: usize>(
     Ok(Start { q: q1, v: v1, moved: length(&way), changed: length(&from_fn(|i| v1[i] - v[i])) })
 }
 
-/// A row misses by more than this part of its terms only where the start is not meant to obey it: numbers that were typed have fewer
+/// A row misses by more than this fraction of its terms only if the start is not meant to obey it: numbers that were typed have fewer
 /// digits than computed ones.
 const SLIP: f64 = 1e-6;
 

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 /// `2 pi` minus its nearest f64.
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
-/// An angle of as many turns, `2^50`, is known to less than a radian.
+/// An angle of this number of turns, `2^50`, is known to less than a radian.
 const COUNTED: f64 = 1_125_899_906_842_624.0;
 
 /// Configuration and velocity, as integrators carry them.
@@ -23,14 +23,14 @@ pub struct State<const N: usize> {
     q: [f64; N],
     rest: [f64; N],
     turns: [f64; N],
-    /// How far a coordinate may go: half a turn of an angle, any finite distance else.
+    /// The largest size of a coordinate: half a turn of an angle, otherwise any finite distance.
     bounds: [f64; N],
     v: [f64; N],
     left: Left<N>,
     past: Past<N>,
 }
 
-/// What the last step leaves to the next beside the velocity.
+/// The results of the last step for the next, beside the velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Left<const N: usize> {
     Nothing,
@@ -73,7 +73,7 @@ impl<const N: usize> State<N> {
         &self.v
     }
 
-    /// The velocity in the system's basis of admissible velocities, where the last step knew it.
+    /// The velocity in the system's basis of admissible velocities; `None` if the last step did not know it.
     #[must_use]
     #[inline(always)]
     pub fn xi(&self) -> Option<[f64; N]> {
@@ -84,24 +84,24 @@ impl<const N: usize> State<N> {
         if let Left::Momenta(xi, _) = self.left { Some(xi) } else { None }
     }
 
-    /// The quasi-momenta in that basis, where the last step carried them.
+    /// The quasi-momenta in that basis; `None` if the last step did not carry them.
     #[must_use]
     #[inline(always)]
     pub fn quasi_momenta(&self) -> Option<[Twofold; N]> {
         if let Left::Momenta(_, pi) = self.left { Some(pi) } else { None }
     }
 
-    /// About the acceleration, where the last step left it.
+    /// The approximate acceleration; `None` if the last step did not leave it.
     #[must_use]
     #[inline(always)]
     pub fn acceleration(&self) -> Option<[f64; N]> {
         if let Left::Acceleration(a) = self.left { Some(a) } else { None }
     }
 
-    /// The quasi-velocities: those the last step left, else those of the velocity.
+    /// The quasi-velocities that the last step left, else the quasi-velocities of the velocity.
     ///
     /// # Errors
-    /// [`ReducedError`] where the system has no basis of admissible velocities, or a degenerate one.
+    /// [`ReducedError`] if the system has no basis of admissible velocities, or a degenerate one.
     #[inline(always)]
     pub fn quasi_velocities<const M: usize>(
         &self,
@@ -134,7 +134,7 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn stays_finite(&self, increment: &[f64; N], v: &[f64; N]) -> Result<(), StepError> {
         let ahead = self.ahead(increment);
-        // A sum is not finite where one of its terms is not.
+        // A sum is not finite if one of its terms is not.
         if (sum(&ahead) + sum(v)).abs() <= f64::MAX || too_large_together(ahead, *v) {
             Ok(())
         } else {
@@ -142,14 +142,14 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
+    /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities if they are known.
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
         self.past.forget();
         self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
     }
 
-    /// [Moves](State::advance) the state where that [leads to finite numbers](State::stays_finite): both questions in one comparison.
+    /// [Moves](State::advance) the state if that [leads to finite numbers](State::stays_finite): both questions in one comparison.
     ///
     /// # Errors
     /// [`StepError::NotFinite`]; the state is then as it was.
@@ -182,7 +182,7 @@ impl<const N: usize> State<N> {
         self.wrap();
     }
 
-    /// The increment of a step of length `h`, extrapolated from the last ones where these were as long and are remembered.
+    /// The increment of a step of length `h`, extrapolated from the last steps; `None` unless they had this length and are remembered.
     #[must_use]
     #[inline(always)]
     pub fn expected(&self, h: f64) -> Option<[f64; N]> {
@@ -243,7 +243,7 @@ impl<const N: usize> State<N> {
     /// The state that [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none of `N` coordinates.
+    /// [`CheckpointError`] if the checkpoint has no state of `N` coordinates.
     pub fn load(checkpoint: &Checkpoint, angles: [bool; N]) -> Result<Self, CheckpointError> {
         let some = |name: &str| -> Result<Option<[f64; N]>, CheckpointError> {
             if checkpoint.list(name)?.is_empty() { Ok(None) } else { checkpoint.get(name).map(Some) }
@@ -271,7 +271,7 @@ impl<const N: usize> State<N> {
     fn wrap(&mut self) {
         for i in 0..N {
             if self.q[i].abs() > self.bounds[i] {
-                // By value, since few steps come here: in the others the numbers stay in registers.
+                // By value, since few steps come here: in all other steps the numbers stay in registers.
                 let turns;
                 (self.q[i], self.rest[i], turns) = wrapped(self.q[i], self.rest[i]);
                 self.turns[i] += turns;
@@ -285,7 +285,7 @@ fn sum<const N: usize>(x: &[f64; N]) -> f64 {
     x.iter().copied().reduce(|sum, x| sum + x).unwrap_or(0.0)
 }
 
-/// Whether all terms of a sum are finite that is not.
+/// Whether all terms of a sum that is not finite are finite.
 #[cold]
 #[inline(never)]
 fn too_large_together<const N: usize>(q: [f64; N], v: [f64; N]) -> bool {
@@ -317,7 +317,7 @@ fn within_half_a_turn(q: f64, rest: f64) -> (f64, f64, f64) {
     (q, rest, turns)
 }
 
-/// The angle within a turn of one of so many turns that two parts of a turn are not enough of its digits.
+/// Brings an angle within a turn by its sine and cosine, if two parts of a turn have too few digits for its number of turns.
 #[cold]
 #[inline(never)]
 fn within_many(angle: f64) -> f64 {

@@ -18,14 +18,14 @@ impl StepError {
             Self::Motion(MotionError { source, .. })
             | Self::Reduced(ReducedError::Motion(MotionError { source, .. })) => lost(source),
             Self::Energy { defect, .. } => !defect.is_finite(),
-            // An adaptive method takes shorter and shorter steps where a function is NaN.
+            // An adaptive method takes shorter and shorter steps if a function is NaN.
             Self::NotFinite | Self::Tolerance { .. } => true,
             _ => false,
         }
     }
 }
 
-/// The error of equations at a place, with the function named that is not finite there, where it is such an error.
+/// The error of equations at a place. It names the function that is not finite there, if that is the cause.
 #[cold]
 #[inline(never)]
 pub(crate) fn suspect_at<const N: usize, const M: usize>(
@@ -42,7 +42,8 @@ pub(crate) fn suspect_at<const N: usize, const M: usize>(
     system.not_a_number(t, q, v).map_or(error, found)
 }
 
-/// The error of a function that is not finite. A basis that is derived by elimination is none where rows depend on one another: these are named.
+/// The error of a function that is not finite. A basis that is derived by elimination does not exist if rows depend on one another: then
+/// the rows are named.
 #[cold]
 fn told<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -56,8 +57,8 @@ fn told<const N: usize, const M: usize>(
     }
 }
 
-/// The error of a step from `state`, with the function named that is not finite at its beginning, in its middle or at its end, with the
-/// velocity at the beginning or with another one, where it is such an error.
+/// The error of a step from `state`. It names the function that is not finite at the beginning, in the middle or at the end of the step,
+/// with the velocity at the beginning or with `v`, if that is the cause.
 #[cold]
 #[inline(never)]
 pub(crate) fn suspect_along<const N: usize, const M: usize>(
@@ -86,7 +87,7 @@ pub(crate) fn suspect_along<const N: usize, const M: usize>(
     error
 }
 
-/// The coordinate whose force is another at rest from one side than from the other: Coulomb's friction, written with `sign`.
+/// The coordinate whose force at rest differs from one side to the other: Coulomb's friction, written with `sign`.
 fn jumps_at_rest<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     t: f64,

@@ -2,21 +2,21 @@ use crate::derivatives::{counted, switch};
 
 /// The formulation of predicted steps: coordinates with multipliers, or the basis of admissible velocities (null space).
 ///
-/// A frozen Jacobian serves long in coordinates where the mass matrix is constant, and in the basis where the basis turns with a body.
-/// So the basis is tried where the Jacobian in coordinates is renewed often; and a run stays in the basis where it is renewed at most
-/// half as often there.
+/// A frozen Jacobian serves long in coordinates if the mass matrix is constant, and in the basis if the basis turns with a body. So the
+/// basis is tried if the Jacobian in coordinates is renewed often; and a run stays in the basis if the Jacobian is renewed at most half as
+/// often there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unknowns {
     /// Whether steps are solved in the basis.
     pub(crate) in_basis: bool,
-    /// Whether the next step made without memory is to change to it.
+    /// Whether the next step made without memory is to change to the basis.
     pub(crate) wanted: bool,
     /// Whether the choice is final.
     pub(crate) decided: bool,
-    /// Steps of the present trial, and in how many of them the Jacobian had to be renewed.
+    /// Steps of the present trial, and the number of them that renewed the Jacobian.
     steps: u32,
     renewed: u32,
-    /// In how many steps of the trial in coordinates it had to be renewed.
+    /// The number of steps of the trial in coordinates that renewed it.
     before: u32,
 }
 
@@ -24,9 +24,9 @@ impl Unknowns {
     /// Before the first step.
     pub(crate) const UNDECIDED: Self =
         Self { in_basis: false, wanted: false, decided: false, steps: 0, renewed: 0, before: 0 };
-    /// Steps of a trial.
+    /// Number of steps of a trial.
     const TRIAL: u32 = 32;
-    /// The basis is tried where so many of them renew the Jacobian, each time for the cost of some two corrections.
+    /// The basis is tried if at least this number of them renew the Jacobian, each time for the cost of some two corrections.
     const MANY: u32 = 4;
 
     /// Begins a series of predicted steps, in the basis or in coordinates; a system without a basis decides for coordinates.
@@ -35,7 +35,7 @@ impl Unknowns {
         (self.in_basis, self.wanted) = (in_basis, in_basis);
     }
 
-    /// Counts a predicted step; whether the next one is to be made without memory, to change the formulation.
+    /// Counts a predicted step; returns whether the next one is to be made without memory, to change the formulation.
     pub(crate) fn are_to_change(&mut self, renewed: bool) -> bool {
         self.steps += 1;
         self.renewed += u32::from(renewed);
@@ -53,7 +53,7 @@ impl Unknowns {
         self.wanted
     }
 
-    /// Every number of it, in a fixed order.
+    /// Visits every number of it, in a fixed order.
     pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
         let Self { in_basis, wanted, decided, steps, renewed, before } = self;
         for flag in [in_basis, wanted, decided] {

@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 /// The times at which `abs`, `sign`, `min` and `max` of time turn from one side to the other, in some expressions.
 ///
-/// Between two of them the expressions are smooth, and each such function has a side: the sign of its argument, of `min(a, b)` and
-/// `max(a, b)` that of `a - b`. [`Corners::of`] writes the expressions with variables for the sides, so that all pieces have the same
+/// Between two of them the expressions are smooth, and each such function has a side: the sign of its argument, or of `a - b` for
+/// `min(a, b)` and `max(a, b)`. [`Corners::of`] writes the expressions with variables for the sides, so that all pieces have the same
 /// formulas.
 ///
 /// ```
@@ -32,13 +32,13 @@ pub struct Corners {
     tape: Tape,
 }
 
-/// More corners than this in a run, or so many looks at parts of the run, are too many.
+/// Maximum number of corners in a run, and of parts of the run that are searched for them.
 const MOST: usize = 100_000;
 const LOOKS: usize = 10_000_000;
 
 impl Corners {
-    /// The corners of some expressions in that variable, the time, and the expressions with a side in place of each corner: the variables
-    /// from `first` on. None where there is no corner that time alone decides on.
+    /// Finds the corners of some expressions in the variable `time`. Returns them with the expressions in which a variable for the side,
+    /// from `first` on, replaces each corner. Returns `None` if time alone decides on no corner.
     ///
     /// # Errors
     /// [`Error::GraphFull`].
@@ -115,7 +115,7 @@ impl Corners {
         sides
     }
 
-    /// The times between two at which a side turns, in order; none where they are more than can be told.
+    /// The times in an interval at which a side turns, in order; `None` if there are too many to find.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Option<Vec<f64>> {
         let mut search = Search {
@@ -167,7 +167,7 @@ impl Search<'_> {
         side
     }
 
-    /// Adds the times between two at which a side turns; none where they are too many.
+    /// Adds the times in an interval at which a side turns; `None` if there are too many.
     fn turns(&mut self, k: usize, from: f64, to: f64, times: &mut Vec<f64>) -> Option<()> {
         let mut waiting = vec![(from, to)];
         // A part in which the argument is zero, or rounding, at least at its ends.

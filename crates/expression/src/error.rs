@@ -158,7 +158,7 @@ pub enum Error {
     /// Fewer numbers than are needed.
     #[error("too few {what}: {expected} are needed, and {found} are given")]
     TooFew {
-        /// Of what.
+        /// The kind of numbers.
         what: &'static str,
         /// How many are needed.
         expected: usize,

@@ -73,7 +73,7 @@ functions! {
     Abs "abs" 1 |a, _b| a.abs();
     /// Sign: -1, 0 of zero, or 1.
     Sign "sign" 1 |a, _b| a.sign();
-    /// Reciprocal, and 0 of zero: in the derivatives of a length, which has none where it vanishes.
+    /// Reciprocal, and 0 of zero: the derivative of a length, which counts as zero at length zero.
     Inverse "inverse" 1 |a, _b| a.abs().where_positive(a.recip(), a * 0.0);
     /// The angle of the vector `(second, first)`.
     Atan2 "atan2" 2 |a, b| a.atan2(b);
@@ -91,14 +91,14 @@ impl Function {
     }
 }
 
-/// The root of a sum of squares, a length: without derivative where it vanishes, as [`Scalar::length`].
+/// The root of a sum of squares, a length: its derivatives at zero are zero, as in [`Scalar::length`].
 #[must_use]
 #[inline(always)]
 pub(crate) fn length<S: Scalar>(square: S) -> S {
     square.where_positive(square.sqrt(), square * 0.0)
 }
 
-/// `a^b` of a number with a constant exponent: a product where the exponent is whole, a root where it is a half.
+/// `a^b` with a constant exponent: a product if `b` is whole, a root if `b` is a half.
 #[must_use]
 #[inline(always)]
 pub(crate) fn power<S: Scalar>(a: S, b: f64) -> S {
@@ -109,14 +109,14 @@ pub(crate) fn power<S: Scalar>(a: S, b: f64) -> S {
     }
 }
 
-/// A positive power of a number that may be zero in a whole region, as `max(0, x)`: without derivatives where it vanishes.
+/// A positive power of a base that may be zero in a whole region, as `max(0, x)`: its derivatives are zero there.
 #[must_use]
 #[inline(always)]
 pub(crate) fn flat_power<S: Scalar>(a: S, p: f64) -> S {
     a.abs().where_positive(power(a, p), a * 0.0)
 }
 
-/// The whole number that this is, where it is small enough for an exponent.
+/// `x` as an integer, if `x` is whole and small enough for an exponent.
 pub(crate) fn whole(x: f64) -> Option<i32> {
     let n = x as i32;
     (f64::from(n).to_bits() == (x + 0.0).to_bits() && n.unsigned_abs() <= 1 << 24).then_some(n)

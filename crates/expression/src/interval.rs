@@ -45,7 +45,7 @@ impl Interval {
         )
     }
 
-    /// Of a function that never falls.
+    /// The values of a function that never falls.
     fn rising(self, f: impl Fn(f64) -> f64) -> Self {
         Self::new(f(self.least), f(self.most)).rounded()
     }
@@ -112,7 +112,7 @@ impl Interval {
         Self::new(if has(PI) { -1.0 } else { ends.least }, if has(0.0) { 1.0 } else { ends.most })
     }
 
-    /// The values of an expression, of those of its parts.
+    /// Bounds on the values of an expression, from the bounds on its parts.
     pub(crate) fn of(kind: &NodeKind, variable: impl Fn(u32) -> Self, part: impl Fn(Expression) -> Self) -> Self {
         match kind {
             NodeKind::Constant(x) => Self::at(x.value()),

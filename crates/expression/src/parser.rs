@@ -6,15 +6,15 @@ use crate::{Error, Function, Limits, Names, Syntax, nearest};
 /// Reads a text.
 ///
 /// Operators are `+ - * /`, `^` or `**`, which binds tighter than a sign before it and groups to the right, as in writing: `-x^2` is
-/// `-(x^2)`, `2^-x^2` is `2^(-(x^2))`. Names are those of the table, the [functions](Function) (`ln` is `log`), and `pi`.
+/// `-(x^2)`, `2^-x^2` is `2^(-(x^2))`. Names are the names of the table, the [functions](Function) (`ln` is `log`), and `pi`.
 ///
 /// # Errors
-/// What is wrong, where, and what would be right there; and [limits](Limits) that the text exceeds.
+/// The first fault with its place and the accepted text, or the [limit](Limits) that the text exceeds.
 pub fn parse(text: &str, names: &Names) -> Result<Syntax, Error> {
     parse_within(text, names, &Limits::default())
 }
 
-/// The same with limits of one's own.
+/// Reads a text within other limits.
 ///
 /// # Errors
 /// As [`parse`].
@@ -44,7 +44,7 @@ const PRODUCT: u8 = 2;
 const SIGN: u8 = 3;
 const POWER: u8 = 4;
 
-/// Dijkstra's shunting yard: what is open stands in a list, not on the stack of the program.
+/// Dijkstra's shunting yard: open operators stand in a list, not on the program's stack.
 struct Parser<'a> {
     tokens: Tokens<'a>,
     names: &'a Names,

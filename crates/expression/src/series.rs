@@ -2,7 +2,7 @@ use scalar::{Scalar, ScalarFunction, assigning_operators, exponential};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// So many Taylor coefficients are carried.
+/// Number of Taylor coefficients.
 const TERMS: usize = 7;
 
 /// A function of one variable near a place, by its Taylor coefficients up to the sixth power: a [`Tape`](crate::Tape) on such numbers gives
@@ -51,7 +51,7 @@ impl Series {
         (1..=k).map(|j| weight(j) * self.0[j] * other[k - j]).sum()
     }
 
-    /// The function with that value here whose rate is `slope` times that of this one.
+    /// The function with this value here, whose rate is `slope` times the rate of `self`.
     fn with_slope(self, value: f64, slope: Self) -> Self {
         Self::successive(value, |k, _| self.convolved(k, &slope.0, |j| j as f64) / k as f64)
     }

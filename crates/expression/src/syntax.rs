@@ -2,15 +2,15 @@ use crate::function::power;
 use crate::{Error, Function};
 use scalar::Scalar;
 
-/// A text as it was written, its names resolved: numbers, names and operations, operands before what is done with them.
+/// A parsed text with resolved names: numbers, names and operations, with operands before their operation.
 ///
-/// It has no tree, so that nothing that is done with it recurs, however deep the text is.
+/// Steps form a list and not a tree, so no function on them recurs, however deep the text is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Syntax {
     pub(crate) steps: Vec<SyntaxStep>,
 }
 
-/// A number, a name or an operation, and the column where it stands.
+/// A number, a name or an operation, and its column in the text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SyntaxStep {
     pub(crate) column: usize,
@@ -52,10 +52,10 @@ struct Operand<S> {
 }
 
 impl Syntax {
-    /// The value with the operations in the order of the text, nothing simplified; `values` are those of the names by their position.
+    /// Evaluates the text in its own order of operations, without simplification. `values` has one value for each name, by its position.
     ///
-    /// This is what the other ways to a value are tested against, and allocates. `a^b` is a product or a root where `b` is a constant
-    /// of the text, else `exp(b log(a))`, which is no number where `a` is negative.
+    /// Tests compare every other evaluation with this one; it allocates. `a^b` is a product or a root if `b` is a constant of the text,
+    /// else `exp(b log(a))`, which is NaN for negative `a`.
     ///
     /// # Errors
     /// [`Error::TooFew`] values.

@@ -6,16 +6,16 @@ use expression::{Expression, Graph, Tape};
 /// How sums and products are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Written {
-    /// As they come.
+    /// As they arise.
     Plainly,
-    /// Multiplied out, so that what cancels does.
+    /// Multiplied out, so that terms cancel.
     Expanded,
-    /// The shorter of the two, each by itself.
+    /// The shorter of the two forms, chosen for each expression.
     Shorter,
 }
 
 impl Written {
-    /// Products of more terms than these stay.
+    /// Products that would have more terms are not multiplied out.
     const MOST: usize = 400;
 
     pub(crate) fn of(self, graph: &mut Graph, e: Expression) -> Expression {
@@ -30,32 +30,32 @@ impl Written {
     }
 }
 
-/// How a row of the constraints makes one vector fewer of those that the rows before it admit.
+/// How a row of the constraints removes one of the vectors that the earlier rows admit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowElimination {
-    /// The row solves for the vector of this number, which goes.
+    /// The row eliminates the vector with this number.
     Solved(usize),
-    /// Two vectors are turned in their plane: the one that the row forbids goes, the other takes the first place.
+    /// Two vectors are turned in their plane: the row eliminates one of the results, and the other takes the first place.
     Turned(usize, usize),
 }
 
 impl Formulas {
-    /// A basis of the admissible velocities: the one that the texts give, else one that is derived. None where none is seen that holds
+    /// A basis of the admissible velocities: the basis in the texts, or else a derived one. Returns `None` if none is found that holds
     /// everywhere.
     ///
-    /// The vectors of the coordinates are made admissible row by row. A row whose product with a vector is a number solves for that
-    /// vector, as `x' - r phi'` does for `x'`. Of a row whose products with two vectors are a sine and a cosine, as those of a blade, these two
-    /// are turned: the one that the row forbids goes, the other stays.
+    /// The coordinate vectors are made admissible row by row. If the product of a row with a vector is a number, the row eliminates this
+    /// vector, as `x' - r phi'` eliminates `x'`. If the products with two vectors are a sine and a cosine, as for a blade, these two
+    /// vectors are turned: one result, which the row forbids, is removed, and the other stays.
     pub fn whole_basis(&mut self) -> Option<Vec<Vec<Expression>>> {
         self.whole_basis_as(Written::Plainly)
     }
 
-    /// How each row makes one vector fewer, where a derived basis is seen that holds everywhere.
+    /// The elimination of each row, if a derived basis is found that holds everywhere.
     pub fn eliminations(&mut self) -> Option<Vec<RowElimination>> {
         Some(self.seen(Written::Plainly)?.1)
     }
 
-    /// The basis that these eliminations derive, one for each row.
+    /// The basis that results from these eliminations, one for each row.
     pub fn basis_by(&mut self, eliminations: &[RowElimination]) -> Vec<Vec<Expression>> {
         let mut vectors = self.coordinate_vectors();
         for (row, how) in eliminations.iter().enumerate() {
@@ -76,7 +76,7 @@ impl Formulas {
         Some(vectors)
     }
 
-    /// The basis that is seen, and how.
+    /// The basis that is found, with its eliminations.
     fn seen(&mut self, written: Written) -> Option<(Vec<Vec<Expression>>, Vec<RowElimination>)> {
         let mut vectors = self.coordinate_vectors();
         let mut all = Vec::new();
@@ -109,7 +109,7 @@ impl Formulas {
 }
 
 impl RowElimination {
-    /// The vectors that are left, of which the row has the products `across`.
+    /// The remaining vectors, if the row has the products `across` with all vectors.
     fn applied(self, graph: &mut Graph, across: &[Expression], vectors: &[Vec<Expression>]) -> Vec<Vec<Expression>> {
         match self {
             Self::Solved(pivot) => {
@@ -144,8 +144,8 @@ impl RowElimination {
 }
 
 impl Formulas {
-    /// The basis by elimination: row after row is solved for the rate of its coordinate, `order` has the two. It holds where no pivot
-    /// vanishes. Each vector has the rate one of a coordinate that is free, in their order.
+    /// The basis by elimination: each row in turn is solved for the rate of a coordinate, both numbered in `order`. The basis holds as
+    /// long as no pivot vanishes. Each vector has the rate one for one free coordinate, in the order of the coordinates.
     pub fn eliminated_basis(&mut self, order: &[(usize, usize)]) -> Vec<Vec<Expression>> {
         let (n, graph) = (self.n, &mut self.graph);
         let mut a: Vec<Vec<Expression>> = self.rows.chunks(n.max(1)).map(<[Expression]>::to_vec).collect();
@@ -174,7 +174,7 @@ impl Formulas {
     }
 }
 
-/// The vector along which the row is a number.
+/// The vector whose product with the row is a number.
 fn solved(graph: &Graph, first_parameter: u32, across: &[Expression]) -> Option<RowElimination> {
     // Rather a number than a product of parameters, and of numbers the first of the largest.
     let size = |e: Expression| graph.value(e).filter(|x| *x != 0.0).map(f64::abs);
@@ -188,7 +188,7 @@ fn solved(graph: &Graph, first_parameter: u32, across: &[Expression]) -> Option<
     pivot.map(RowElimination::Solved)
 }
 
-/// Two vectors with which the products of the row are a sine and a cosine.
+/// Two vectors whose products with the row are a sine and a cosine.
 fn turned(graph: &mut Graph, across: &[Expression]) -> Option<RowElimination> {
     for i in 0..across.len() {
         for j in i + 1..across.len() {
@@ -216,7 +216,7 @@ fn less(graph: &mut Graph, a: &[Expression], factor: Expression, b: &[Expression
         .collect()
 }
 
-/// How much an evaluation takes, in operations; an angle takes as much as some twenty.
+/// Cost of an evaluation in operations; a sine or cosine counts as some twenty.
 pub(crate) fn work(graph: &Graph, all: &[Expression]) -> usize {
     Tape::new(graph, all).map_or(usize::MAX, |tape| tape.cost().total() + 20 * tape.cost().angles)
 }

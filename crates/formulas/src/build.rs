@@ -175,7 +175,7 @@ fn positions(tables: &mut Tables, words: &Words) -> Result<Positions, TextError>
     Ok((functions, rates))
 }
 
-/// A force for each coordinate; none where no text gives one.
+/// A force for each coordinate; `None` if no text gives a force.
 fn forces(tables: &mut Tables, words: &Words) -> Result<Option<Vec<Expression>>, TextError> {
     if words.forces.is_empty() {
         return Ok(None);
@@ -194,7 +194,7 @@ fn forces(tables: &mut Tables, words: &Words) -> Result<Option<Vec<Expression>>,
     Ok(Some(forces))
 }
 
-/// The components of all vectors; none where no text gives them.
+/// The components of all vectors; `None` if no text gives a basis.
 fn basis(tables: &mut Tables, words: &Words, dimension: usize) -> Result<Option<Vec<Expression>>, TextError> {
     if words.basis.is_empty() {
         return Ok(None);

@@ -1,22 +1,22 @@
 use expression::{Corners, Error, Expression, Graph};
 
-/// What the parameters of a system are in its formulas.
+/// The form of a system's parameters in its formulas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parameters {
     /// Their values.
     Numbers,
-    /// Variables, behind those of time, coordinates and rates.
+    /// Variables, numbered after time, coordinates and rates.
     Variables,
 }
 
-/// What the texts of a system mean, as expressions of one graph.
+/// The meaning of a system's texts, as expressions of one graph.
 ///
-/// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` the parameter `k`.
+/// With `n` coordinates, variable 0 is time, `1 + i` coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` parameter `k`.
 #[derive(Debug, Clone)]
 pub struct Formulas {
     /// The number of coordinates.
     pub n: usize,
-    /// The number of constraints, of which the last are the rates of those on positions.
+    /// The number of constraints. The last ones are the rates of constraints on positions.
     pub m: usize,
     /// All expressions.
     pub graph: Graph,
@@ -28,11 +28,11 @@ pub struct Formulas {
     pub level: Vec<Expression>,
     /// The functions of the constraints on positions.
     pub positions: Vec<Expression>,
-    /// A generalised force for each coordinate; none where no text gives one.
+    /// A generalised force for each coordinate; `None` if no text gives a force.
     pub force: Option<Vec<Expression>>,
-    /// The basis of the admissible velocities, `n - m` vectors of `n` components; none where no text gives it.
+    /// The basis of the admissible velocities, `n - m` vectors of `n` components; `None` if no text gives a basis.
     pub basis: Option<Vec<Expression>>,
-    /// What is told besides.
+    /// The further outputs.
     pub outputs: Vec<Expression>,
 }
 
@@ -61,8 +61,8 @@ impl Formulas {
         (0..self.n).map(|i| self.rate(i)).collect()
     }
 
-    /// The corners in time, and the formulas with variables for their sides behind all others; none where there are no such corners. What
-    /// is told besides stays as it is.
+    /// The corners in time, and the formulas with variables for their sides, numbered after all other variables; `None` if there are no
+    /// such corners. The outputs stay as they are.
     ///
     /// # Errors
     /// [`Error::GraphFull`].

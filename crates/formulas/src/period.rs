@@ -4,11 +4,11 @@ use crate::tables::Tables;
 use crate::{Entry, Problem, TextError, Unit, Words};
 use expression::{Expression, Turned};
 
-/// So many places are looked at where the form of a formula does not say whether it has the period of an angle.
+/// Number of points at which a formula is evaluated if its form does not tell whether it has the period of an angle.
 const PLACES: usize = 48;
 
 impl Tables {
-    /// Refuses a formula that is another after a turn of a coordinate that is an angle.
+    /// Refuses a formula whose value changes after a full turn of an angle.
     pub(crate) fn periodic(&self, words: &Words, formula: Expression, entry: Entry) -> Result<(), TextError> {
         for (i, (name, unit)) in words.coordinates.iter().enumerate() {
             let variable = 1 + i as u32;
@@ -25,8 +25,8 @@ impl Tables {
         Ok(())
     }
 
-    /// Values of all variables, the same ones in every run. They are of several sizes, and some of them positive: where a formula is a
-    /// number, and where it has a corner, is not known.
+    /// Values of all variables, the same in every run. They have several sizes, and some are positive, since the domain of a formula and
+    /// the places of its corners are not known.
     fn places(&self, words: &Words) -> Vec<Vec<f64>> {
         let mut random = 0;
         let place = |k: usize| {

@@ -6,7 +6,7 @@ use expression::{Expression, Graph};
 
 /// The equations of motion in a basis of the admissible velocities, `q' = W xi + v_b` and `xi' = f(t, q, xi)`.
 ///
-/// The variable of the quasi-velocity `k` is that of the rate of the coordinate `k`.
+/// The quasi-velocity `k` has the variable of the rate of coordinate `k`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedFormulas {
     /// The vectors of the basis.
@@ -15,17 +15,17 @@ pub struct ReducedFormulas {
     pub velocity: Vec<Expression>,
     /// The accelerations of the quasi-velocities.
     pub acceleration: Vec<Expression>,
-    /// After how many quadratures the configuration is known from the quasi-velocities over time; none where it is no cascade.
+    /// Number of quadratures that give the configuration from the quasi-velocities over time; `None` if they do not suffice.
     pub reconstruction: Option<u32>,
-    /// Whether the accelerations depend on neither time nor place.
+    /// Whether the accelerations depend on neither time nor configuration.
     pub stands_alone: bool,
 }
 
 impl Formulas {
-    /// The reduced equations, where a basis holds everywhere (book, (1.5)):
+    /// The reduced equations in a basis that holds everywhere (book, (1.5)), if there is one:
     /// `W' L_vv W xi' = W' (L_q + F - d/dt L_v at frozen xi)`, solved symbolically.
     ///
-    /// They are written in several ways, with products as they come or multiplied out; the shortest is taken.
+    /// They are written in several ways, with products as they arise or multiplied out; the shortest is taken.
     pub fn reduced(&mut self) -> Option<ReducedFormulas> {
         let mut best: Option<(usize, ReducedFormulas)> = None;
         for of_basis in [Written::Expanded, Written::Plainly] {
@@ -46,9 +46,9 @@ impl Formulas {
         self.reduced_along(basis, written)
     }
 
-    /// The reduced equations in a basis of the admissible velocities, written in the way that is shorter entry by entry: quicker to derive
-    /// than the shortest of [`reduced`](Self::reduced). None where they are too large: they are derived while a run waits, and by numbers a step
-    /// takes a few times as long.
+    /// The reduced equations in a basis of the admissible velocities, each entry written in its shorter way: quicker to derive than the
+    /// shortest of [`reduced`](Self::reduced). Returns `None` if they are too large. A run waits for the derivation; without it,
+    /// evaluating the equations by numbers makes a step a few times as long.
     pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<ReducedFormulas> {
         /// The terms and factors of a derivation of about a second.
         const MOST: usize = 320_000;
@@ -56,14 +56,14 @@ impl Formulas {
         self.reduced_along(basis, Written::Shorter)
     }
 
-    /// The velocity `W xi + v_b` in a basis of the admissible velocities. None where it is too large.
+    /// The velocity `W xi + v_b` in a basis of the admissible velocities; `None` if its formulas are too large.
     pub fn velocity_in(&mut self, basis: &[Vec<Expression>]) -> Option<Vec<Expression>> {
         let velocity = self.velocity(basis);
         self.graph.check().ok()?;
         Some(velocity)
     }
 
-    /// The rates of the coordinates, of quasi-velocities that have the variables of rates.
+    /// The rates of the coordinates, with the quasi-velocities in the variables of rates.
     fn velocity(&mut self, basis: &[Vec<Expression>]) -> Vec<Expression> {
         let (rates, shift) = (self.rates(), self.shift());
         let graph = &mut self.graph;
@@ -142,7 +142,7 @@ impl Formulas {
         Some(ReducedFormulas { basis, velocity: v, acceleration, reconstruction, stands_alone })
     }
 
-    /// The shortest velocity that meets an affine constraint, `v_b = -A' (A A')^-1 b`.
+    /// The shortest velocity that meets the affine constraint, `v_b = -A' (A A')^-1 b`.
     fn shift(&mut self) -> Vec<Expression> {
         let (n, m) = (self.n, self.m);
         let graph = &mut self.graph;
@@ -163,7 +163,7 @@ impl Formulas {
     }
 }
 
-/// The rate of an expression of time, place and quasi-velocities that do not change, along a velocity.
+/// The rate of an expression of time and configuration along a velocity, at constant quasi-velocities.
 fn rate(graph: &mut Graph, e: Expression, places: &[u32], v: &[Expression]) -> Expression {
     let slopes = graph.gradient(e, places);
     let (moved, by_time) = (dot(graph, &slopes, v), graph.derivative(e, 0));
@@ -194,7 +194,7 @@ fn solve(graph: &mut Graph, mut matrix: Vec<Vec<Expression>>, mut right: Vec<Exp
     right
 }
 
-/// After how many quadratures all coordinates are known, where no rate depends on a coordinate that waits for it.
+/// Number of quadratures that give all coordinates; `None` if rates of coordinates depend on one another in a circle.
 fn cascade(graph: &Graph, v: &[Expression], n: usize) -> Option<u32> {
     let needs: Vec<Vec<usize>> = v
         .iter()

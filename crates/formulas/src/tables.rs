@@ -1,7 +1,7 @@
 use crate::{Entry, Problem, TextError};
 use expression::{Expression, Function, Graph, Names, Syntax, parse};
 
-/// Names that texts of one kind may use, and what they mean.
+/// Names that texts of one kind may use, with their meanings.
 #[derive(Debug, Default)]
 pub(crate) struct TextTable {
     names: Names,
@@ -16,18 +16,18 @@ impl TextTable {
     }
 }
 
-/// What a text may say.
+/// The functions that a text may contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum May {
-    /// Functions of time and place.
+    /// Functions of time and coordinates.
     Place,
-    /// Of rates too.
+    /// Functions of rates too.
     Move,
-    /// And what jumps.
+    /// Functions that jump too.
     Jump,
 }
 
-/// The names of a system, for each kind of text those that it may use.
+/// The names of a system, listed by the kind of text that may use them.
 #[derive(Debug)]
 pub(crate) struct Tables {
     pub(crate) graph: Graph,
@@ -38,7 +38,7 @@ pub(crate) struct Tables {
     jumping: TextTable,
 }
 
-/// All formulas of a system and their derivatives have at most so many terms and factors.
+/// Maximum number of terms and factors in all formulas of a system and their derivatives.
 const LARGEST: usize = 1 << 19;
 
 impl Tables {
@@ -86,7 +86,7 @@ impl Tables {
         self.graph.build(&syntax, &table.meanings).map_err(|error| fail(error.into()))
     }
 
-    /// The formula of an abbreviation, and what a text that uses it must be allowed to say.
+    /// The formula of an abbreviation, and the permission that a text needs to use it.
     pub(crate) fn abbreviation(&mut self, text: &str, entry: Entry) -> Result<(Expression, May), TextError> {
         let formula = self.build(text, May::Jump, entry)?;
         // The same text is parsed again where less may be said: names that stand for jumps are not known there.

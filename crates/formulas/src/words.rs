@@ -3,18 +3,18 @@
 pub enum Unit {
     /// An angle (rad), in which the system has the period `2 pi`.
     Angle,
-    /// Any other, by its name.
+    /// Any other unit, by its name.
     Other(String),
 }
 
 impl Unit {
-    /// The unit of that name, not an angle with a period.
+    /// The unit with this name, which is no angle with a period.
     #[must_use]
     pub fn other(name: &str) -> Self {
         Self::Other(name.to_owned())
     }
 
-    /// Its name: that of an angle is `rad`.
+    /// The name of the unit; `rad` for an angle.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -26,8 +26,8 @@ impl Unit {
 
 /// The texts of a system, in the order in which they were written.
 ///
-/// In a text `t` is time (s), `x'` or `x_dot` the rate of the coordinate `x`. Formulas may use parameters, and abbreviations that stand
-/// before them; see [`expression`] for what else.
+/// In a text `t` is time (s), `x'` or `x_dot` the rate of the coordinate `x`. Formulas may use parameters and earlier abbreviations; see
+/// [`expression`] for the rest of the syntax.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Words {
     /// Coordinates with their units.
@@ -44,9 +44,8 @@ pub struct Words {
     pub positions: Vec<String>,
     /// Generalised forces, by the name of the coordinate on which they act.
     pub forces: Vec<(String, String)>,
-    /// A basis of the velocities that the constraints admit: for each of its vectors a formula for each coordinate. Derived where it is
-    /// empty.
+    /// A basis of the admissible velocities: for each vector a formula for each coordinate. If empty, a basis is derived.
     pub basis: Vec<Vec<String>>,
-    /// What is to be told besides coordinates and rates: names with their formulas.
+    /// Further quantities to output: names with their formulas.
     pub outputs: Vec<(String, String)>,
 }

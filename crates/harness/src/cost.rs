@@ -7,7 +7,7 @@ use std::hint::black_box;
 /// the step is used.
 ///
 /// # Errors
-/// [`RunError`] where the run fails.
+/// [`RunError`] if the run fails.
 pub fn step_time(system: &dyn Mechanism, schedule: &Schedule, q: &[f64], v: &[f64]) -> Result<f64, RunError> {
     let start = system.state(q, v);
     let run = |start: AnyState| made(system, schedule, start, |piece, run| run(piece));
@@ -22,7 +22,7 @@ pub fn step_time(system: &dyn Mechanism, schedule: &Schedule, q: &[f64], v: &[f6
 /// How often such a step evaluates the Lagrangian, the forces or the constraint, with derivatives or without.
 ///
 /// # Errors
-/// [`RunError`] where the run fails.
+/// [`RunError`] if the run fails.
 pub fn step_evaluations(system: &dyn Mechanism, schedule: &Schedule, q: &[f64], v: &[f64]) -> Result<f64, RunError> {
     let evaluations = Cell::new(0);
     let steps = made(system, schedule, system.state(q, v), |piece, run| piece.counted(&evaluations, run))?;

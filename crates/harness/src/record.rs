@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 pub struct NewtonSummary {
     /// The mean.
     pub mean: f64,
-    /// The most.
+    /// The largest number.
     pub max: u32,
 }
 
@@ -26,9 +26,9 @@ pub struct EnergySummary {
     pub max_error: f64,
     /// Slope of the least-squares line through `E - E0 - work` at all nodes (J/s).
     pub drift_per_time: f64,
-    /// What `E - E0 - work` does over the run, its fast and its slow part.
+    /// The course of `E - E0 - work` over the run, its fast and its slow part.
     pub drift: Drift,
-    /// Steps that change the energy though no force does that work; none where the run has none.
+    /// Steps that change the energy though no force does that work; `None` if the run has none.
     pub jump: Option<EnergyJump>,
 }
 
@@ -54,11 +54,10 @@ pub struct Record {
     pub step: f64,
     /// Steps made.
     pub steps: u64,
-    /// Time of the steps (s). Of a comparison that of the steps alone, nothing observed, the median of repeated runs where they are short, and
-    /// the processor's time of the thread where the system tells that; of a single run that on the wall, with what looks on.
+    /// Time of the steps (s). In a comparison, of the steps alone without observers: the median of repeated runs if they are short, and the
+    /// processor's time of the thread if the system tells it. In a single run, elapsed time with the observers.
     pub wall_seconds: f64,
-    /// Time in which formulas of the system were derived, which is no part of that of the steps (s): of a system of text, whose equations are
-    /// derived when they are first asked for.
+    /// Time in which formulas of a system of text were derived, when they were first asked for (s); it is not in the time of the steps.
     pub derivation_seconds: f64,
     /// Newton iterations.
     pub newton: NewtonSummary,
@@ -66,11 +65,11 @@ pub struct Record {
     pub energy: EnergySummary,
     /// `max |A(q) v + b|` over all nodes.
     pub constraint_max: f64,
-    /// The same of the discrete constraint `w_d` of a step, `A(q) (q1 - q0)/h + b` by the rule of the method (see
+    /// The largest residual of the discrete constraint `w_d` of a step, `A(q) (q1 - q0)/h + b` by the rule of the method (see
     /// `docs/methods/drift.md`), over all steps.
     pub step_constraint_max: f64,
-    /// `max |g(q, t)|` over all nodes, the residual of the constraints on positions; none where no constraint is the rate of
-    /// a function `g` of the positions ([`System::holonomic`](lagrangian::System::holonomic)).
+    /// `max |g(q, t)|` over all nodes, the residual of the constraints on positions; `None` if no constraint is the rate of a function `g`
+    /// of the positions ([`System::holonomic`](lagrangian::System::holonomic)).
     pub leaf_max: Option<f64>,
     /// Time at the end (s).
     pub t: f64,
@@ -80,16 +79,16 @@ pub struct Record {
     pub v: Vec<f64>,
     /// Nodes for plots.
     pub samples: Vec<Sample>,
-    /// Why the run ended early, where it did; all else then tells of the part before.
+    /// Why the run ended early; all else then describes the part before. `None` if it did not fail.
     pub failure: Option<RunError>,
-    /// What became of steps that might be divided; none of a method that may divide none.
+    /// A summary of divided steps; `None` if the method may divide none.
     pub substeps: Option<SubstepSummary>,
     /// Whether the [`Progress`](crate::Progress) ended the run early.
     pub interrupted: bool,
 }
 
 impl Record {
-    /// The time of the steps for each second of the motion; none of a run without a step.
+    /// The time of the steps for each second of the motion; `None` for a run without a step.
     #[must_use]
     pub fn seconds_per_simulated_second(&self) -> Option<f64> {
         (self.steps > 0).then(|| self.wall_seconds / (self.steps as f64 * self.step.abs()))
@@ -101,13 +100,13 @@ impl Record {
         self.failure.is_none() && !self.interrupted
     }
 
-    /// What the error of the energy does; none of a run that did not reach its end.
+    /// The kind of the error of the energy; `None` if the run did not reach its end.
     #[must_use]
     pub fn verdict(&self) -> Option<DriftVerdict> {
         self.is_whole().then_some(self.energy.drift.verdict)
     }
 
-    /// Why the method refuses the system, where it does: no failure of a computation, since none was begun or could be.
+    /// Why the method refuses the system, or `None`: a refusal is no failure of a computation, since none was begun or could be.
     #[must_use]
     pub fn refusal(&self) -> Option<&'static str> {
         match self.failure {
@@ -135,11 +134,11 @@ pub(crate) struct Meter {
     most: u32,
     bucket: (f64, f64),
     samples: Vec<Sample>,
-    /// The end, where that is no regular sample.
+    /// The end, if it is no regular sample.
     last_sample: Option<Sample>,
     end: (u64, f64, Vec<f64>, Vec<f64>),
     substeps: Option<SubstepSummary>,
-    /// Of the step that is being made.
+    /// The number of parts of the step that is being made.
     parts: u64,
 }
 
@@ -313,7 +312,7 @@ impl Observer for Meter {
     fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
-        // Over a divided step the discrete constraint is that of its parts.
+        // Over a divided step the discrete constraint is evaluated for its parts.
         if self.parts == 0 {
             self.slip.step(node);
         }

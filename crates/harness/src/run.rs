@@ -6,13 +6,13 @@ use dla::{AnyState, Mechanism, Observer, Piece, RunError, Schedule, piece_by_pie
 /// A run to be made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
-    /// When the steps are.
+    /// The schedule of the steps.
     pub schedule: Schedule,
     /// Configuration at the start.
     pub q: Vec<f64>,
     /// Velocity at the start.
     pub v: Vec<f64>,
-    /// About how many nodes to keep for plots.
+    /// Approximate number of nodes to keep for plots.
     pub samples: u64,
 }
 
@@ -32,8 +32,7 @@ pub fn integrate_pieces(
     integrate_from(0, system, method, schedule, state, observer)
 }
 
-/// The same for a run that has made so many steps already, whose observer then sees the first node by
-/// [`Observer::resume`].
+/// As [`integrate_pieces`], for a run that has made `from` steps already; the observer then sees the first node by [`Observer::resume`].
 ///
 /// # Errors
 /// As [`integrate_pieces`].
@@ -46,7 +45,7 @@ pub fn integrate_from(
     observer: &mut dyn Observer,
 ) -> Result<u64, RunError> {
     piece_by_piece(from, system, schedule, state, |piece, Piece { steps, schedule }, state| {
-        // A method for each piece: nothing that it remembers holds across a jump.
+        // A method for each piece: its memory does not hold across a jump.
         let mut integrator = piece.integrator(method);
         substepped_part(piece, &mut *integrator, method.substeps(), &schedule, steps, state, observer)
     })
@@ -67,7 +66,7 @@ pub fn integrate_on(
     integrate_pieces(system, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
 }
 
-/// Makes a run twice, once observed and once timed with nothing looking on, and measures it.
+/// Makes a run twice, once observed and once timed without observers, and measures it.
 ///
 /// A run that fails gives the record of its valid part, with [`Record::failure`] set.
 pub fn run(system: &dyn Mechanism, method: &Method, request: &Request, progress: &mut dyn Progress) -> Record {
@@ -83,12 +82,12 @@ pub fn run(system: &dyn Mechanism, method: &Method, request: &Request, progress:
     Record { interrupted, ..meter.record(method.info(), wall_seconds, outcome.err()) }
 }
 
-/// Of a longer run than this the first so many steps are timed.
+/// Number of first steps that are timed in a longer run.
 const TIMED: u64 = 1 << 22;
 
-/// The time of steps that have been made before, nothing looking on (s): the processor's, for this thread.
+/// The time of steps that have been made before, without observers (s): the processor's, for this thread.
 ///
-/// Of more than 2^22 steps it is that of the first so many, times the ratio: a long run costs hardly more for being timed.
+/// For more than 2^22 steps, the time of the first 2^22 is scaled by the ratio: a long run costs hardly more for being timed.
 pub fn timed(system: &dyn Mechanism, method: &Method, request: &Request, steps: u64, progress: &dyn Progress) -> f64 {
     let first = Schedule { steps: steps.min(TIMED), ..request.schedule };
     let start = system.state(&request.q, &request.v);

@@ -10,11 +10,11 @@ use std::time::Instant;
 
 /// How a run is saved, and the checkpoint from which it is resumed.
 pub struct Saving<'a> {
-    /// What tells the run from all others: a checkpoint without numbers.
+    /// A checkpoint without numbers that identifies the run.
     pub identity: &'a Checkpoint,
-    /// The checkpoint to go on from; the start where there is none.
+    /// The checkpoint to go on from; `None` begins at the start.
     pub from: Option<&'a Checkpoint>,
-    /// A checkpoint is made after every so many steps; no checkpoints where there is no number.
+    /// Number of steps between checkpoints; `None` makes no checkpoints.
     pub every: Option<u64>,
     /// Receives every checkpoint.
     pub save: &'a mut dyn FnMut(&Checkpoint),
@@ -23,13 +23,13 @@ pub struct Saving<'a> {
 /// An event that happened, as a checkpoint keeps it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedCrossing {
-    /// Which one, by its place in the list of events.
+    /// The index of the event.
     pub event: usize,
-    /// When (s).
+    /// The time (s).
     pub t: f64,
     /// The interval of time that is known to hold the change of sign (s).
     pub within: f64,
-    /// How far apart the samples are by which it was found (s).
+    /// The spacing of the samples that found it (s).
     pub spacing: f64,
     /// Whether the function rises through zero.
     pub rising: bool,
@@ -55,7 +55,7 @@ impl SavedCrossing {
         beside.iter().chain(&self.q).chain(&self.v).copied().collect()
     }
 
-    /// All of a checkpoint of a system of `n` coordinates; what is not a multiple of their length belongs to none.
+    /// All crossings in a checkpoint of a system of `n` coordinates; an incomplete last one is left out.
     fn all(numbers: &[f64], n: usize) -> Vec<Self> {
         let one = |numbers: &[f64]| {
             let (beside, state) = numbers.split_first_chunk::<BESIDE>()?;
@@ -71,11 +71,11 @@ impl SavedCrossing {
 /// A saved run, with the events that happened.
 #[derive(Debug, Clone)]
 pub struct SavedRun {
-    /// The record; where an event ended the run, its end is the event.
+    /// The record; if an event ended the run, its end is the event.
     pub record: Record,
-    /// The events, in the order in which they happened, also those before the checkpoint.
+    /// The events, in the order of time, also the ones before the checkpoint.
     pub crossings: Vec<SavedCrossing>,
-    /// Which of them are so close that others may have been missed.
+    /// Crossings so close that others may have been missed.
     pub close: Option<Close>,
 }
 
@@ -93,15 +93,15 @@ struct Progressing {
     unseen: u64,
 }
 
-/// Makes a run once, measures it, and shows its nodes to `nodes` where that is asked for.
+/// Makes a run once, measures it, and shows its nodes to `nodes` if there are any.
 ///
-/// The record is the same to the last bit whether the run was made at once or in parts, but for its time, which is that of
-/// all parts, with what looks on; so are the nodes, of which a resumed run shows those after the checkpoint. A run may be resumed with
-/// more steps than it had. Where the progress ends the run a last checkpoint is made; so is one at its end, from which the same record
-/// comes again at once, and one at its start where an event ends it before any other.
+/// The record is the same to the last bit whether the run was made at once or in parts, except for its time, which is the sum over all
+/// parts, with the observers; so are the nodes, of which a resumed run shows the ones after the checkpoint. A run may be resumed with more
+/// steps than it had. If the progress ends the run, a last checkpoint is made; so is one at its end, from which the same record comes again
+/// at once, and one at its start if an event ends it before any other.
 ///
 /// # Errors
-/// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
+/// [`CheckpointError`] if the checkpoint does not belong to this run; nothing is then done.
 pub fn run_saved(
     system: &dyn Mechanism,
     method: &Method,
@@ -113,8 +113,8 @@ pub fn run_saved(
     run_saved_watched(system, method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
 }
 
-/// The same with an eye on events, in so many parts of each step, which are told from others by the identity. The event that ends a run is
-/// found again from the last checkpoint before it.
+/// As [`run_saved`], and looks for events, in `samples` parts of each step; the identity must name both. The event that ends a run is found
+/// again from the last checkpoint before it.
 ///
 /// # Errors
 /// As [`run_saved`].
@@ -199,7 +199,7 @@ pub fn run_saved_watched(
                 }
                 seen = Some((times.time(done.made), state.clone()));
                 run.memory = integrator.memory();
-                // Of a run that is over there is none, and its checkpoint stays as it is.
+                // A run that is over has no news, and its checkpoint stays as it is.
                 let news = done.made > first || first == 0;
                 let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
                 if news && (due && done.made < schedule.steps || ends(&done)) {
@@ -236,7 +236,7 @@ fn within(made: u64, steps: u64) -> Result<(), CheckpointError> {
     Err(CheckpointError::Other { what, found: made.to_string(), expected: format!("at most {steps}") })
 }
 
-/// The parts of some steps that end at the multiples of `every`; at least one, though it be empty.
+/// The parts of some steps that end at the multiples of `every`; at least one, even if it is empty.
 fn chunks(steps: &Range<u64>, every: Option<u64>) -> Vec<Range<u64>> {
     let mut parts = Vec::new();
     let mut at = steps.start;
@@ -275,7 +275,7 @@ impl Progressing {
         let work = Work::load(checkpoint, t, &state)?;
         let meter = Meter::load(checkpoint, meter, made, t, &state, work.clone())?;
         let crossings = SavedCrossing::all(&checkpoint.list("crossings")?, state.q().len());
-        // A checkpoint may be of a program that did not count them.
+        // A checkpoint of another program may lack this count.
         let [unseen] = checkpoint.counts("unseen").unwrap_or([0]);
         Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings, unseen }, work))
     }

@@ -10,10 +10,10 @@ use dla::{
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// A state of a run, and how it moves with each number that varies.
+/// A state of a run, and its derivatives in each number that varies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moving {
-    /// When it is (s).
+    /// The time (s).
     pub t: f64,
     /// The state.
     pub state: AnyState,
@@ -30,13 +30,13 @@ pub enum SensitivitiesError {
     Method {
         /// The method.
         method: &'static str,
-        /// Why it has none.
+        /// The reason.
         reason: &'static str,
     },
     /// Forces or constraints jump along the run.
     #[error("forces or constraints jump at t = {time:?} s, and a step across a jump has no derivative")]
     Jump {
-        /// When (s).
+        /// The time of the jump (s).
         time: f64,
     },
     /// A step failed.
@@ -57,14 +57,14 @@ pub fn differentiated() -> Vec<&'static str> {
     METHODS.iter().map(|info| info.name).filter(has).collect()
 }
 
-/// Makes a run with tangent vectors, and gives it at the times asked for, or at its end where none are.
+/// Makes a run with tangent vectors, and gives it at the times asked for, or at its end if there are none.
 ///
-/// The states are those of the same run without tangent vectors, to the last bit: each step is made first, and then differentiated
-/// by the implicit function theorem ([`dla::Sensitivity`]). At a time between nodes the shorter step is differentiated that
-/// [`dla::Samples`] makes. Times are in order, and within the run.
+/// The states are the same as in a run without tangent vectors, to the last bit: each step is made first, and then differentiated by the
+/// implicit function theorem ([`dla::Sensitivity`]). At a time between nodes, the shorter step that [`dla::Samples`] makes is
+/// differentiated. Times are in order, and within the run.
 ///
 /// # Errors
-/// [`SensitivitiesError`] where the method or the system has no derivatives, where a step fails, and where the caller ends the run.
+/// [`SensitivitiesError`] if the method or the system has no derivatives, if a step fails, or if the caller ends the run.
 pub fn sensitivities(
     family: &dyn ParametrisedMechanism,
     method: &Method,
@@ -129,14 +129,14 @@ struct Carry<'a> {
 }
 
 impl Carry<'_> {
-    /// The number of the basis near a state, where `known` is the one before.
+    /// The number of the basis near a state; `known` is the number before.
     fn near(&self, t: f64, state: &AnyState, known: u64) -> u64 {
         let mut number = 0;
         self.family.mechanism().near(t, state.q(), known, &mut |near, _| number = near);
         number
     }
 
-    /// The tangent vectors after the step between two states, made in the basis of that number.
+    /// The tangent vectors after the step between two states, made in the basis number `basis`.
     fn carried(
         &self,
         basis: u64,
@@ -147,7 +147,7 @@ impl Carry<'_> {
         self.family.carried(self.method, basis, time, ends, report, &self.tangents)
     }
 
-    /// Takes the samples between two nodes, the second of which is not among them.
+    /// Takes the samples between two nodes, without the second.
     fn sample(&mut self, node: &View<'_>, (t0, start): (f64, &AnyState)) -> Result<(), SensitivityError> {
         while let Some(&t) = self.times.get(self.taken.len())
             && t < node.t

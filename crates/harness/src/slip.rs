@@ -1,8 +1,8 @@
 use dla::{AnyState, Checkpoint, CheckpointError, Method, Rules, View};
 use lagrangian::linear::larger;
 
-/// The constraint residuals of a run besides those of the velocities at its nodes: of the discrete constraint over each step, and of
-/// constraints on positions.
+/// The constraint residuals of a run besides the residuals of the velocities at its nodes: of the discrete constraint over each step, and
+/// of constraints on positions.
 #[derive(Debug)]
 pub(crate) struct Slip {
     rules: Rules,
@@ -12,7 +12,7 @@ pub(crate) struct Slip {
     /// The mean velocity of a step.
     mean: Vec<f64>,
     step: f64,
-    /// The largest of the functions of the positions, where there are any.
+    /// The largest of the functions of the positions; `None` if there are none.
     leaf: Option<f64>,
 }
 
@@ -44,9 +44,9 @@ impl Slip {
         self.resume(node);
     }
 
-    /// Sees a node again where a smooth piece begins.
+    /// Sees a node again at the beginning of a smooth piece.
     pub(crate) fn resume(&mut self, node: &View<'_>) {
-        // What is not known stays so.
+        // An unknown residual stays unknown.
         if self.step.is_nan() {
             return;
         }
@@ -92,7 +92,7 @@ impl Slip {
         checkpoint.put("leaf", self.leaf.as_slice());
     }
 
-    /// The same with what [`save`](Self::save) wrote.
+    /// A copy with the numbers that [`save`](Self::save) wrote.
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [step] = checkpoint.get("slip")?;
         let leaf = checkpoint.list("leaf")?.first().copied();

@@ -35,7 +35,7 @@ impl Trend {
         Self { count, mean_x, mean_y, sum_xx, sum_xy }
     }
 
-    /// The slope of the line; none before two different abscissae.
+    /// The slope of the line; `None` before two different abscissae.
     #[must_use]
     pub fn slope(&self) -> Option<f64> {
         (self.sum_xx > 0.0).then(|| self.sum_xy / self.sum_xx)

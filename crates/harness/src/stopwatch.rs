@@ -1,17 +1,17 @@
-//! How long code takes: by the clock on the wall, and by the processor's time of this thread.
+//! Times of code: elapsed time, and the processor's time of this thread.
 
 use std::time::Instant;
 
-/// A time taken (s).
+/// A measured time (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Taken {
-    /// On the wall.
+    /// Elapsed time.
     pub(crate) wall: f64,
-    /// The processor's, for this thread: what others did meanwhile is not in it. The wall's where the system has none.
+    /// The processor's time of this thread, without what other threads did meanwhile; elapsed time if the system has none.
     pub(crate) cpu: f64,
 }
 
-/// Calls `f` that many times and takes the time of one call.
+/// Calls `f` the given number of times and takes the time of one call.
 pub(crate) fn take(calls: u32, mut f: impl FnMut()) -> Taken {
     let (cpu, wall) = (thread_seconds(), Instant::now());
     for _ in 0..calls {
@@ -23,9 +23,9 @@ pub(crate) fn take(calls: u32, mut f: impl FnMut()) -> Taken {
     Taken { wall: one * wall, cpu: one * spent }
 }
 
-/// Keeps the thread on the core where it is, as long as this lives: caches stay warm, and one clock is read.
+/// Keeps the thread on its present core while it lives: caches stay warm, and one clock is read.
 ///
-/// Where the system knows no such thing, or forbids it, nothing happens.
+/// If the system cannot do that, or forbids it, nothing happens.
 #[derive(Debug)]
 pub(crate) struct Pinned {
     #[cfg(target_os = "linux")]

@@ -5,15 +5,15 @@ use std::time::{Duration, Instant};
 
 /// Timed runs shorter than this in all are repeated.
 const ENOUGH: Duration = Duration::from_millis(20);
-/// So many times at most.
+/// Maximum number of timed runs.
 const REPEATS: usize = 15;
 
-/// Something to tell how many steps have been made.
+/// Receives the number of steps that have been made.
 pub trait Progress {
-    /// So many more steps are done.
+    /// `steps` more steps are done.
     fn advance(&mut self, steps: u64);
 
-    /// So many more steps are going to be made than were known of.
+    /// `steps` more steps will be made than were announced.
     fn expect(&mut self, _steps: u64) {}
 
     /// Whether the run is to end here, with what it has; asked every 2^10 steps, of a system of many coordinates more often, and after every
@@ -33,7 +33,7 @@ impl<F: FnMut(u64)> Progress for F {
     }
 }
 
-/// The observer that tells a [`Progress`] every so many steps.
+/// The observer that reports to a [`Progress`] every 2^10 steps.
 pub(crate) struct Ticker<'a> {
     pub(crate) progress: &'a mut dyn Progress,
     pub(crate) told: u64,
@@ -51,7 +51,7 @@ impl<'a> Ticker<'a> {
         (Self::EVERY / (node.system.size().n as u64).div_ceil(Self::FEW).next_power_of_two()).max(1)
     }
 
-    /// A run that has told of so many steps already.
+    /// The ticker of a run that has reported `told` steps already.
     pub(crate) fn new(progress: &'a mut dyn Progress, told: u64) -> Self {
         Self { progress, told, stopped: false, every: Self::EVERY }
     }
@@ -110,8 +110,8 @@ impl Observer for Stopper<'_> {
     }
 }
 
-/// The median time of `f` over repeated calls, of one call where that is long enough (s): the processor's time of this thread, so that what
-/// else the machine does is not in it; on the wall where the system tells no other.
+/// The median time of `f` over repeated calls, or the time of one call if that is long enough (s): the processor's time of this thread, so
+/// that other work of the machine is not in it; elapsed time if the system tells no other.
 pub(crate) fn median_seconds(mut f: impl FnMut()) -> f64 {
     let mut times = Vec::with_capacity(REPEATS);
     let begin = Instant::now();

@@ -8,24 +8,24 @@ use dla::{
     recommend_by_trial,
 };
 
-/// A run, measured, with the nodes that were asked for and the events that happened.
+/// A measured run, with the nodes that were asked for and the events that happened.
 #[derive(Debug, Clone)]
 pub struct Watched {
-    /// The record; where an event ended the run, its end is the event.
+    /// The record; if an event ended the run, its end is the event.
     pub record: Record,
     /// The nodes.
     pub trajectory: Option<Trajectory>,
     /// The events, in the order in which they happened.
     pub crossings: Vec<Crossing>,
-    /// Which of them are so close that others may have been missed.
+    /// Crossings so close that others may have been missed.
     pub close: Option<Close>,
 }
 
-/// Into how many parts a step is divided to look for events, where nobody says ([`Watch::samples`]).
+/// Default number of parts into which a step is divided to look for events ([`Watch::samples`]).
 pub const EVENT_SAMPLES: u32 = 4;
 
-/// Makes a run, once, measures it with what looks on, looks for events, in so many parts of each step, and keeps every `keep`-th node
-/// where that is asked for.
+/// Makes a run, once, and measures it with its observers; looks for events, in the given number of parts of each step, and keeps every
+/// `keep`-th node, if `keep` is given.
 pub fn run_watched(
     system: &dyn Mechanism,
     method: &Method,
@@ -39,7 +39,7 @@ pub fn run_watched(
     Watched { trajectory, ..made }
 }
 
-/// The same with any observer, which sees the nodes as they come; none of them is kept.
+/// As [`run_watched`], with any observer, which sees the nodes as they come; no nodes are kept.
 pub fn run_observed(
     system: &dyn Mechanism,
     method: &Method,
@@ -56,7 +56,7 @@ pub fn run_observed(
     watch.samples = samples;
     let mut outcome = Ok(0);
     let mut state = system.state(q, v);
-    // The run is made once: its time has what looks on in it.
+    // The run is made once: its time includes the observers.
     let taken = take(1, || outcome = integrate_pieces(system, method, schedule, &mut state, &mut watch));
     let (crossings, close, ended) = (watch.crossings().to_vec(), watch.close(), watch.ended().is_some());
     let interrupted = ticker.stopped || (outcome.is_ok_and(|made| made < schedule.steps) && !ended);

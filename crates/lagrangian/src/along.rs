@@ -11,8 +11,8 @@ const DEGENERATE: f64 = 1e-13;
 /// the basis, and along these and the motion; one with the derivatives in the place along the vectors. The matrix is eliminated without
 /// pivots: it is positive definite where the Lagrangian is a kinetic energy less a potential, and elsewhere the result may be no number.
 ///
-/// None where the system gives no basis, and for more than five quasi-velocities, of which the matrix of all coordinates is not much
-/// larger.
+/// Returns `None` if the system gives no basis, and for more than five quasi-velocities, for which the matrix of all coordinates is not
+/// much larger.
 #[inline(always)]
 pub fn acceleration_along<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,

@@ -1,8 +1,7 @@
 use crate::linear::{Inverse, Singular};
 use crate::{Saddle, from_fn};
 
-/// The equations of a [`Saddle`] where `K^-1` is known: its Schur complement `C K^-1 G'`, factorised for several right-hand
-/// sides.
+/// The equations of a [`Saddle`] with known `K^-1`: its Schur complement `C K^-1 G'`, factorised for several right-hand sides.
 #[derive(Debug, Clone, Copy)]
 pub struct Bordered<const N: usize, const M: usize> {
     /// The rows of `C`.
@@ -14,10 +13,10 @@ pub struct Bordered<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Bordered<N, M> {
-    /// Of `K^-1`, the rows of `G`, and those of `C`.
+    /// The equations with the solver `inverse` for `K^-1`, the rows `transposed` of `G` and the `rows` of `C`.
     ///
     /// # Errors
-    /// [`Singular`] where they do not determine a solution.
+    /// [`Singular`] if the equations do not determine a solution.
     #[inline(always)]
     pub fn new(
         inverse: impl Fn(&[f64; N]) -> [f64; N],
@@ -28,8 +27,8 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
         Ok(Self { rows: *rows, response, schur: Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)? })
     }
 
-    /// The same where the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; for more
-    /// multipliers that is not checked.
+    /// The same equations, or `None` if the elimination of up to three multipliers loses more than three digits, whatever the scale of
+    /// the rows. For more multipliers the loss is not checked.
     #[inline(always)]
     pub fn clear(
         inverse: impl Fn(&[f64; N]) -> [f64; N],
@@ -52,8 +51,7 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
         (response, schur)
     }
 
-    /// Whether the determinant of the equations is positive, given whether that of `K` is: it is that of `K` times that of
-    /// `-C K^-1 G'`.
+    /// Whether the determinant of the equations, `det K det(-C K^-1 G')`, is positive; `block` tells whether `det K` is positive.
     #[must_use]
     #[inline(always)]
     pub fn is_positive(&self, block: bool) -> bool {

@@ -31,7 +31,7 @@ pub struct Bracket<S, const N: usize, const M: usize> {
 impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
     const DIMENSION: usize = AdmissibleBasis::<S, N, M>::DIMENSION;
 
-    /// At `q` and the quasi-velocities `xi`; none where the system gives no basis.
+    /// The bracket at `q` and the quasi-velocities `xi`; `None` if the system gives no basis.
     #[must_use]
     #[inline(always)]
     pub fn at<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Self> {
@@ -75,7 +75,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
         Some((basis, velocity, l, along))
     }
 
-    /// The same of many coordinates, along one after another: with its derivatives in all of them a basis has `N^3` numbers.
+    /// As `with_slopes`, for many coordinates, along one after another: a basis with its derivatives in all of them has `N^3` numbers.
     #[inline(always)]
     fn with_slopes_in_turn<Sys: System<N, M>>(
         system: &Sys,
@@ -131,8 +131,8 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
 
     /// `B(z) (h_q, h_pi)`: the rates of `q` and of `pi`.
     ///
-    /// With the gradient of the energy they are those of the motion without forces. For any other covector too the
-    /// product of the rates with it vanishes.
+    /// For the gradient of the energy these are the rates of the motion without forces. The product of any covector with its rates
+    /// vanishes, as `B` is skew.
     #[must_use]
     #[inline(always)]
     pub fn rates(&self, h_q: &[S; N], h_pi: &[S; N]) -> ([S; N], [S; N]) {
@@ -193,7 +193,7 @@ where
     Some(EnergySlope { h_q, pi })
 }
 
-/// The same of many coordinates, along one after another.
+/// As [`energy_slope`], for many coordinates, along one after another.
 #[inline(always)]
 fn energy_slope_in_turn<Sys, S, const N: usize, const M: usize>(
     system: &Sys,

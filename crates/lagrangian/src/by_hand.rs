@@ -5,8 +5,8 @@ use crate::{Motion, ReducedError, Scalar};
 pub enum StageEvaluation {
     /// All stages in vector registers ([`Wide`](crate::simd::Wide)): a term that is zero by the model takes no instruction.
     InRegisters,
-    /// The same without a search for zeros ([`Pack`](crate::simd::Pack)), for formulas that are simplified: they compile in a fraction of
-    /// the time.
+    /// All stages in vector registers without a search for zeros ([`Pack`](crate::simd::Pack)), for simplified formulas: they compile in a
+    /// fraction of the time.
     Simplified,
     /// All stages as arrays of numbers ([`Lanes`](crate::Lanes)), for formulas that are interpreted, operation by operation: vector
     /// registers would be stored and loaded around each operation.
@@ -54,9 +54,9 @@ pub trait Reduced<const N: usize, const M: usize> {
         derived()
     }
 
-    /// After how many quadratures the configuration is known from the quasi-velocities over time, where it is a cascade: zero
-    /// says that the basis is constant; one, that it depends on coordinates alone whose rates are combinations of `xi` with
-    /// constant coefficients. (The reconstruction equation; Bloch 2015, section 5.7.)
+    /// Number of quadratures that give the configuration from the quasi-velocities over time, if the reconstruction is a cascade. Zero
+    /// means that the basis is constant; one, that it depends only on coordinates whose rates are combinations of `xi` with constant
+    /// coefficients. (The reconstruction equation; Bloch 2015, section 5.7.)
     ///
     /// A collocation then iterates on the quasi-velocities alone, and each iteration is a whole cascade.
     #[inline(always)]
@@ -64,8 +64,8 @@ pub trait Reduced<const N: usize, const M: usize> {
         None
     }
 
-    /// Whether the equations of the quasi-velocities stand alone, `xi' = f(xi)` without time and place, as those of a free body
-    /// do (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7). The configuration then waits until they are solved.
+    /// Whether the equations of the quasi-velocities contain neither time nor configuration, `xi' = f(xi)`, as for a free body
+    /// (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7). The configuration is then computed after they are solved.
     #[inline(always)]
     fn stands_alone(&self) -> bool {
         false
@@ -77,7 +77,7 @@ pub trait Reduced<const N: usize, const M: usize> {
         None
     }
 
-    /// The same as [`reduced_motion`](Self::reduced_motion) under one more generalised force.
+    /// As [`reduced_motion`](Self::reduced_motion), under one more generalised force.
     #[inline(always)]
     fn pushed_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
         None

@@ -54,7 +54,7 @@ impl<const M: usize> Classification<M> {
 ///
 /// With the rows as one-forms `alpha_k = A_k dq + b_k dt` the brackets are `alpha_k([X, Y]) = -d alpha_k(X, Y)` on admissible
 /// `X`, `Y`. (Bloch 2015, Nonholonomic Mechanics and Control, section 2.5; Frobenius 1877.) Derivatives are automatic;
-/// what is below the rounding of its terms counts as zero.
+/// values below the rounding of their terms count as zero.
 #[must_use]
 pub fn classify<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
@@ -126,7 +126,7 @@ pub fn rank_is_constant<Sys: System<N, M>, const N: usize, const M: usize>(
         }
 }
 
-/// The same along `P` coordinates, from number `from` on.
+/// Whether the rank is constant along `P` coordinates, from number `from` on.
 #[inline(never)]
 fn rank_is_constant_along<Sys: System<N, M>, const N: usize, const M: usize, const P: usize>(
     system: &Sys,
@@ -140,7 +140,7 @@ fn rank_is_constant_along<Sys: System<N, M>, const N: usize, const M: usize, con
     stay_within(space, &rows, P.min(N - from))
 }
 
-/// Whether combinations of rows that vanish have derivatives within the span, along so many directions.
+/// Whether the vanishing combinations of rows have derivatives within the span, along the first `directions` directions.
 fn stay_within<const N: usize, const M: usize, const P: usize>(
     space: &RowSpace<N, M>,
     rows: &[[Dual<f64, P>; N]; M],

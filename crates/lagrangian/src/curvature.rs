@@ -31,7 +31,8 @@ pub fn add_position_curvature<Sys: System<N, M>, const N: usize, const M: usize>
     add(&PositionCurvature { system, t, q }, factors, matrix);
 }
 
-/// Of few variables in one evaluation, of many in blocks, as [`second_derivatives`](crate::second_derivatives).
+/// Adds the second derivatives, for few variables in one evaluation, for many in blocks, as
+/// [`second_derivatives`](crate::second_derivatives).
 #[inline(always)]
 fn add<const N: usize, const M: usize>(of: &impl Curved<N, M>, factors: &[f64; M], matrix: &mut [[f64; N]; N]) {
     match const { N <= AT_ONCE } {

@@ -23,7 +23,7 @@ pub(crate) trait Derived: Scalar {
     fn times(self, factor: Self::Base) -> Self;
 }
 
-/// The length of a vector; where it vanishes all derivatives are zero.
+/// The length of a vector. All derivatives of a zero vector's length are zero.
 #[inline(always)]
 pub(crate) fn derived_length<D: Derived, const K: usize>(x: &[D; K]) -> D {
     let zero = D::Base::zero();
@@ -55,7 +55,7 @@ pub(crate) fn derived_length<D: Derived, const K: usize>(x: &[D; K]) -> D {
     (along + squares.times(half)).at(r)
 }
 
-/// The angle of the vector `(x, y)`; where it vanishes all derivatives are zero.
+/// The angle of the vector `(x, y)`. All derivatives of a zero vector's angle are zero.
 #[inline(always)]
 pub(crate) fn derived_angle<D: Derived>(y: D, x: D) -> D {
     let (x0, y0) = (x.value(), y.value());

@@ -32,14 +32,14 @@ pub trait Effect<B, const N: usize> {
         }
     }
 
-    /// The whole generalised force, `dL/dq` by hand and what is added to the forces; none where the slope is not known by hand.
+    /// The whole generalised force, `dL/dq` by hand plus the added forces; `None` if the slope is not known by hand.
     #[inline(always)]
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         self.slope(body, t, q).with_force(self.force(body, t, q, v))
     }
 
-    /// Whether it may add to the forces, whatever [`force`](Self::force) gives: false where that is none at all times and states, so that
-    /// who asks for what brakes a body need not compute it.
+    /// Whether the effect may add to the forces. If false, [`force`](Self::force) adds nothing at any time and state, so that a caller
+    /// interested in brakes need not evaluate it.
     #[inline(always)]
     fn has_force(&self) -> bool {
         true
@@ -73,7 +73,7 @@ impl<S: Scalar, const N: usize> EffectSlope<S, N> {
         }
     }
 
-    /// The whole generalised force of an effect with this slope and the given force; none where the slope is not known.
+    /// The whole generalised force of an effect with this slope and the given force; `None` if the slope is not known.
     #[inline(always)]
     pub(crate) fn with_force(self, force: Option<[S; N]>) -> Option<[S; N]> {
         match (self, force) {

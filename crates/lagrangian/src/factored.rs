@@ -12,7 +12,7 @@ pub struct FactoredSaddle<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> FactoredSaddle<N, M> {
-    /// The matrices of the equations, in the given basis of `ker G` where there is one and with multipliers otherwise.
+    /// The matrices of the equations, in the basis of `ker G` if given, else with the multipliers.
     ///
     /// # Errors
     /// [`Singular`] where they do not determine a solution.

@@ -5,9 +5,9 @@ use std::ops::{Add, Div, Mul, Neg};
 /// A number with its gradient in `N` variables, or a number that depends on none of them; which of the two is known when a model is
 /// compiled, after inlining.
 ///
-/// So where a Lagrangian is differentiated in its velocities, functions of the configuration are computed in plain numbers, where
-/// [`Dual`](crate::Dual) would carry zeros along; for functions of the variables both are the same. (A missing gradient hides an
-/// infinity or a NaN that zeros would be multiplied by.)
+/// If a Lagrangian is differentiated in its velocities, functions of the configuration are then computed in plain numbers, for which
+/// [`Dual`](crate::Dual) would carry zeros. Functions of the variables cost the same in both. (A missing gradient hides an infinity or a
+/// NaN that zeros would be multiplied by.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gradient<S, const N: usize> {
     /// The value.

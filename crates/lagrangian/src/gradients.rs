@@ -4,7 +4,7 @@ use crate::{AdmissibleBasis, Constraint, Dual, HyperDual, Parametrised, Scalar, 
 /// A number with its derivatives in eight directions.
 pub type Seeded = Dual<f64, 8>;
 
-/// A number of [`Gradients`] with its derivative along one more direction, that of a motion or of a basis vector.
+/// A number of [`Gradients`] with its derivative along one more direction: a motion or a basis vector.
 pub type Along = Dual<Seeded, 1>;
 
 /// What the equations of a step need of a system, with derivatives in eight directions.
@@ -71,7 +71,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
         }
     }
 
-    /// The rows along which the constraints react: those of `A`, or `d phi / dv`.
+    /// The rows along which the constraints react: `A` for affine constraints, `d phi / dv` for the others.
     #[must_use]
     pub fn reaction_rows(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [[Seeded; N]; M] {
         let (a, _) = self.constraint(t, q);

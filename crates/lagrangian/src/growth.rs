@@ -60,7 +60,7 @@ pub enum GrowthError {
 /// How the admissible directions grow by their brackets at a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth<const N: usize> {
-    /// The growth vector `r_1 <= r_2 <= ..`: the rank of all brackets of up to so many fields.
+    /// The growth vector `r_1 <= r_2 <= ..`: `r_k` is the rank of all brackets of up to `k` fields.
     ///
     /// It ends with the first `r_k = N`, or with [`Growth::DEPTH`] entries.
     pub dimensions: Vec<usize>,
@@ -69,10 +69,10 @@ pub struct Growth<const N: usize> {
 }
 
 impl<const N: usize> Growth<N> {
-    /// Brackets of so many fields are taken at most.
+    /// Maximum number of fields in a bracket.
     pub const DEPTH: usize = 4;
-    /// A singular value below this, relative to the largest, is none. Exact derivatives leave rounding, some `1e-16` times the
-    /// number of operations; a direction this weak could not be told from it after a few more.
+    /// Singular values below this fraction of the largest count as zero. Exact derivatives leave rounding of some `1e-16` times the
+    /// number of operations, from which a much weaker direction could not be told.
     pub const TOLERANCE: f64 = 1e-10;
 
     /// Whether the brackets span every direction: by the theorem of Chow and Rashevskii every place near the point is then
@@ -112,7 +112,7 @@ fn admissible_fields<'a, Sys: System<N, M>, const N: usize, const M: usize>(
 
 /// The growth vector of the admissible directions of a system, with the brackets behind it.
 ///
-/// Brackets are nested to the right; by the Jacobi identity these span all of their length. The rank is that of the singular
+/// Brackets are nested to the right; by the Jacobi identity these span all brackets of the same length. The rank is the number of singular
 /// values above [`Growth::TOLERANCE`]. (Bellaiche 1996, The tangent space in sub-Riemannian geometry, section 2.)
 ///
 /// # Errors
@@ -161,7 +161,7 @@ fn rank<const N: usize>(vectors: &[(Vec<usize>, [f64; N])]) -> usize {
 }
 
 impl<const M: usize> Elimination<M> {
-    /// The pivots of Gauss-Jordan elimination, the largest entry of what is left next, rows relative to their own size.
+    /// The pivots of Gauss-Jordan elimination: each is the largest remaining entry, relative to the size of its row.
     fn choose<const N: usize>(a: [[f64; N]; M]) -> Self {
         let mut left = a.map(|row| {
             let size = crate::linear::largest(&row);

@@ -40,8 +40,8 @@ pub fn second_at_node<Sys: System<N, M>, S: Scalar, const N: usize, const M: usi
     second_derivatives(&AtNode::<_, _, N, M> { at: At { system, t, q, v }, back, ahead })
 }
 
-/// The Lagrangian, its momenta `L_v` in both gradients, and `L_vv`, the mass matrix; inlined, so that sines and other functions of the
-/// configuration are shared with what is evaluated beside it.
+/// The Lagrangian, its momenta `L_v` in both gradients, and the mass matrix `L_vv`. Inlined, so that code evaluated beside it shares the
+/// sines and other functions of the configuration.
 #[must_use]
 #[inline(always)]
 pub fn second_in_velocity<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(

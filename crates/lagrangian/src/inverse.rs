@@ -16,7 +16,7 @@ impl<const U: usize> Inverse<U> {
     /// cancellation, whatever the scale of rows and columns.
     const CLEAR: f64 = 1e-3;
 
-    /// Of a matrix given by rows.
+    /// The inverse of a matrix given by rows.
     ///
     /// # Errors
     /// As [`Lu::new`].
@@ -25,7 +25,7 @@ impl<const U: usize> Inverse<U> {
         Self::above(a, THRESHOLD)
     }
 
-    /// The same for a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
+    /// The inverse of a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
     ///
     /// # Errors
     /// As [`Lu::new`].
@@ -37,7 +37,7 @@ impl<const U: usize> Inverse<U> {
         }
     }
 
-    /// The same where the elimination of up to three rows loses no more than three digits; for more rows that is not checked.
+    /// As `above`, but `None` if the elimination of up to three rows loses more than three digits. For more rows the loss is not checked.
     #[inline(always)]
     pub(crate) fn clear_above(a: &[[f64; U]; U], threshold: f64) -> Option<Self> {
         // Decided by the number of rows alone, at compile time: a result that may be of either kind would be stored and loaded again,

@@ -34,13 +34,13 @@ impl<const U: usize> Lu<U> {
     /// Factorises `matrix`, given by rows.
     ///
     /// # Errors
-    /// [`Singular`] where a pivot, relative to the size of its row and column, vanishes to rounding or is not a number.
+    /// [`Singular`] if a pivot, relative to the size of its row and column, is zero to rounding or NaN.
     #[inline]
     pub fn new(matrix: [[f64; U]; U]) -> Result<Self, Singular> {
         Self::above(matrix, THRESHOLD)
     }
 
-    /// The same for a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
+    /// Factorises a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
     ///
     /// # Errors
     /// As [`Lu::new`].
@@ -107,9 +107,9 @@ impl<const U: usize> Lu<U> {
     }
 }
 
-/// Whether the determinant of a matrix, given by rows, is positive; none where it is zero or not a number.
+/// Whether the determinant of a matrix, given by rows, is positive; `None` if the determinant is zero or NaN.
 ///
-/// By its expansion up to four rows, which costs a fraction of a factorisation and does not depend on the scale of rows and
+/// Matrices of up to four rows are expanded, which costs a fraction of a factorisation and does not depend on the scale of rows and
 /// columns.
 #[must_use]
 #[inline]
@@ -131,7 +131,7 @@ pub fn has_positive_determinant<const U: usize>(a: &[[f64; U]; U]) -> Option<boo
     (determinant.abs() > 0.0).then_some(determinant > 0.0)
 }
 
-/// The larger of `m` and the size of `x`; what is not a number wins, where `f64::max` would drop it.
+/// The larger of `m` and `|x|`. A NaN in `x` is returned, whereas `f64::max` would drop it.
 #[must_use]
 #[inline(always)]
 pub fn larger(m: f64, x: f64) -> f64 {
@@ -139,7 +139,7 @@ pub fn larger(m: f64, x: f64) -> f64 {
     if size > m || size.is_nan() { size } else { m }
 }
 
-/// The size of the largest component; NaN where one of them is NaN.
+/// The largest `|x_i|` of a vector; NaN if a component is NaN.
 #[must_use]
 #[inline(always)]
 pub fn largest(x: &[f64]) -> f64 {
@@ -149,7 +149,7 @@ pub fn largest(x: &[f64]) -> f64 {
 /// The least-squares solution `lambda` of `A' lambda = b`, `A` given by its `M` rows: `(A A') lambda = A b`.
 ///
 /// # Errors
-/// [`Singular`] where the rows of `A` depend on one another.
+/// [`Singular`] if the rows of `A` depend on one another.
 #[inline]
 pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f64; N]) -> Result<[f64; M], Singular> {
     if M == 1 {

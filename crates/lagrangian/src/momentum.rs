@@ -11,7 +11,7 @@ where
     by_places!(in_velocity_by::<Sys, S, N, M>(system, t, q, v))
 }
 
-/// The same by derivatives in `W` places.
+/// The momenta by derivatives in `W` places.
 #[inline(always)]
 fn in_velocity_by<Sys, S, const N: usize, const M: usize, const W: usize>(
     system: &Sys,

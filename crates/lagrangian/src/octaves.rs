@@ -6,7 +6,7 @@ pub fn octaves(x: f64) -> f64 {
     (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
 }
 
-/// The number of so many octaves, of which there may be a thousand: the inverse of [`octaves`].
+/// The number with this logarithm in octaves, between about -1000 and 1000: the inverse of [`octaves`].
 #[inline(always)]
 #[must_use]
 pub fn of_octaves(octaves: f64) -> f64 {

@@ -2,9 +2,9 @@ use crate::{AdmissibleBasis, Constraint, Scalar, System, mapped};
 
 /// A family of mechanical systems with `N` coordinates, `M` velocity constraints and `P` parameters.
 ///
-/// The functions are those of [`System`], with the parameters `p` as numbers of the same scalar, so that what is derived of
-/// them has exact derivatives in the parameters too: masses, offsets, stiffnesses, and controls that are constant over a
-/// step. [`Member`] is the system at given parameters.
+/// The functions are the functions of [`System`] with the parameters `p` as numbers of the same scalar. Quantities derived from them
+/// therefore have exact derivatives in the parameters too: masses, offsets, stiffnesses, and controls that are constant over a step.
+/// [`Member`] is the system at given parameters.
 ///
 /// ```
 /// use lagrangian::{Constraint, Member, Parametrised, Scalar};
@@ -38,7 +38,7 @@ pub trait Parametrised<const N: usize, const M: usize, const P: usize> {
         None
     }
 
-    /// A basis of the admissible velocities, where one is known in closed form.
+    /// A basis of the admissible velocities, if one is known in closed form.
     #[inline(always)]
     fn admissible_basis<S: Scalar>(&self, _p: &[S; P], _t: S, _q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
         None

@@ -16,8 +16,7 @@ pub trait Piecewise: Sized {
     fn piece(&self, t: f64) -> Self;
 }
 
-/// The whole number of steps that `steps` stands for, where a jump so many steps into a run falls on a node; `None` where it
-/// falls inside a step.
+/// Rounds `steps`, the time of a jump in steps from the start of a run, to a whole number. Returns `None` if the jump falls inside a step.
 ///
 /// Times and steps are rounded decimals, which shows after some 1e6 steps.
 #[must_use]

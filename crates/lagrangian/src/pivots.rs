@@ -3,11 +3,11 @@
 use crate::Scalar;
 use nalgebra::DMatrix;
 
-/// Where a rate becomes so many times the others, or an entry so many times a pivot, other pivots are chosen: the best value of both is
-/// about one.
+/// Pivots are replaced if a solved rate exceeds `MOST` times a free rate, or an entry exceeds `MOST` times a pivot. The best value of
+/// both ratios is about one.
 const MOST: f64 = 3.0;
 
-/// Which rate each constraint is solved for, in the order of the elimination.
+/// The rate for which each constraint is solved, in the order of the elimination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pivots {
     /// Rows with their columns.
@@ -16,17 +16,17 @@ pub struct Pivots {
 }
 
 impl Pivots {
-    /// So many constraints have pivots, at most: seven bits tell the row and the column of each, and their [number](Self::number) is exact
-    /// as a number of 53 bits.
+    /// Maximum number of constraints with pivots: seven bits encode the row and the column of each, so their [number](Self::number) is
+    /// exact in an `f64` with its 53 bits.
     pub const MOST_ROWS: usize = 7;
-    /// And so many coordinates.
+    /// Maximum number of coordinates with pivots.
     pub const MOST_COLUMNS: usize = 16;
 
-    /// Those that are best conditioned for these rows: by elimination with complete pivoting, of rows of length one and of columns in the
-    /// sizes of their rates, so that neither the scale of a constraint nor the unit of a coordinate counts.
+    /// The best conditioned pivots for these rows, by elimination with complete pivoting. Rows are scaled to length one and columns by the
+    /// sizes of their rates, so neither the scale of a constraint nor the unit of a coordinate matters.
     ///
-    /// `rows` are the constraints, at most [`MOST_ROWS`](Self::MOST_ROWS), of coordinates, at most [`MOST_COLUMNS`](Self::MOST_COLUMNS);
-    /// further ones have no pivot.
+    /// `rows` has one row for each constraint and one column for each coordinate. Rows beyond [`MOST_ROWS`](Self::MOST_ROWS) and columns
+    /// beyond [`MOST_COLUMNS`](Self::MOST_COLUMNS) get no pivot.
     #[must_use]
     pub fn best(rows: &DMatrix<f64>, sizes: &[f64]) -> Self {
         let (m, n) = rows.shape();
@@ -63,19 +63,19 @@ impl Pivots {
         pivots
     }
 
-    /// The sizes of rates with the same kinetic energy, where `masses` is the diagonal of the mass matrix.
+    /// The rates that have the same kinetic energy, if `masses` is the diagonal of the mass matrix.
     pub fn sizes(masses: impl IntoIterator<Item = f64>) -> impl Iterator<Item = f64> {
         // A rate without kinetic energy has the size one.
         masses.into_iter().map(|mass| if mass > 0.0 && mass.is_finite() { mass.sqrt().recip() } else { 1.0 })
     }
 
-    /// A whole number that says all of it, from one on.
+    /// The pivots encoded as one whole number, at least 1.
     #[must_use]
     pub fn number(&self) -> u64 {
         1 + self.order().fold(0, |number, (r, c)| number << 7 | (r as u64) << 4 | c as u64)
     }
 
-    /// Those with that number, of so many rows.
+    /// The pivots of `rows` constraints with this [number](Self::number).
     #[must_use]
     pub fn numbered(number: u64, rows: usize) -> Self {
         let rows = rows.min(Self::MOST_ROWS);
@@ -88,8 +88,8 @@ impl Pivots {
         pivots
     }
 
-    /// Whether the rates that are solved for stay within so many times those that are free, each in its size, and no pivot is much smaller
-    /// than another that could stand in its place.
+    /// Whether each solved rate is at most `MOST` times each free rate, both in units of their sizes, and no pivot is much smaller than
+    /// another entry that could replace it.
     #[must_use]
     pub fn are_good<const N: usize, const M: usize>(&self, n: usize, rows: [[f64; N]; M], sizes: &[f64]) -> bool {
         let vectors = self.basis(n, rows);

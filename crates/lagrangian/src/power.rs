@@ -25,7 +25,7 @@ impl PowerSources {
         self.time || self.forces || self.constraints
     }
 
-    /// Those of a system, which its functions tell without a number.
+    /// The power sources of a system, found by tracing its functions without numbers.
     pub fn of<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys) -> Self {
         let (t, q) = (Traced::TIME, [Traced::STATE; N]);
         Self {
@@ -36,7 +36,7 @@ impl PowerSources {
     }
 }
 
-/// The power `F . v` of the generalised forces (W); `None` where there are none.
+/// The power `F . v` of the generalised forces (W); `None` without forces.
 #[inline]
 pub fn force_power<Sys, const N: usize, const M: usize>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>
 where

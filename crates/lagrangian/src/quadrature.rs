@@ -75,8 +75,8 @@ pub fn gauss_legendre_twofold<const S: usize>() -> ([Twofold; S], [Twofold; S]) 
     (nodes, weights)
 }
 
-/// The coefficients `a[i][j]`, the integral of the `j`-th Lagrange polynomial of the Gauss nodes from 0 to the `i`-th:
-/// those of the Gauss collocation method.
+/// The coefficients `a[i][j]` of the Gauss collocation method: the integral of the `j`-th Lagrange polynomial of the Gauss nodes from 0 to
+/// the `i`-th node.
 ///
 /// By the expansion of the Lagrange polynomials in Legendre's (Hairer, Norsett and Wanner 1993, section II.7; Hairer and
 /// Wanner 1996, section IV.5), which loses no digits. For symmetric nodes and weights `a[i][j] + a[S-1-i][S-1-j] = b[j]`

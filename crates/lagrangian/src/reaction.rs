@@ -80,7 +80,7 @@ fn add_gradients<Sys, S, const N: usize, const M: usize, const P: usize>(
     }
 }
 
-/// What the constraints on positions miss, `g_k`, and their gradients; none where the system has no such constraint.
+/// The residuals `g_k` of the constraints on positions, and their gradients; `None` without such constraints.
 ///
 /// A value that the rounding of the coordinates alone may bring, `2 eps sum_i |dg/dq_i q_i|`, counts as zero: far from the
 /// origin no coordinates come nearer.
@@ -102,7 +102,7 @@ where
     }))
 }
 
-/// The largest `|g_k(q, t)|` of the constraints on positions; zero where there are none.
+/// The largest `|g_k(q, t)|` of the constraints on positions; zero without such constraints.
 #[inline]
 pub fn position_residual<Sys, const N: usize, const M: usize>(system: &Sys, t: f64, q: &[f64; N]) -> f64
 where

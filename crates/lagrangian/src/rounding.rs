@@ -13,19 +13,19 @@ const UNIT: f64 = 0.5 * f64::EPSILON;
 /// are rounded once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionRounding<const N: usize> {
-    /// Of the momenta `L_v` (kg m/s, or whatever those of the coordinate are).
+    /// Error bound of the momenta `L_v` (kg m/s, or the momentum unit of the coordinate).
     pub momentum: [f64; N],
-    /// Of the sum of the forces, `L_q + F - (d/dt L_v at constant v) + A' lambda`.
+    /// Error bound of the sum of the forces, `L_q + F - (d/dt L_v at constant v) + A' lambda`.
     pub force: [f64; N],
-    /// Of the accelerations.
+    /// Error bound of the accelerations.
     pub acceleration: [f64; N],
 }
 
 impl<const N: usize> MotionRounding<N> {
-    /// At `(t, q, v)`.
+    /// The bounds at `(t, q, v)`.
     ///
     /// # Errors
-    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    /// [`MotionError`] if the mass matrix or the constraint is degenerate.
     #[cold]
     #[inline(never)]
     pub fn at<Sys: System<N, M>, const M: usize>(

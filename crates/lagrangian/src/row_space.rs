@@ -165,7 +165,7 @@ impl<const M: usize> Dependence<M> {
     }
 }
 
-/// The lower triangle `L` of `L L' = mass`; none where it is not positive definite.
+/// The lower triangle `L` of `L L' = mass`; `None` if `mass` is not positive definite.
 fn cholesky<const N: usize>(mass: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let mut l = [[0.0; N]; N];
     for i in 0..N {

@@ -8,7 +8,7 @@ use crate::{AdmissibleBasis, Rows, from_fn, mapped};
 /// C x             = c      (M equations)
 /// ```
 ///
-/// with `G` the constraint matrix where the multipliers act, and `C` that of the constraint to be met.
+/// `G` is the constraint matrix at the point where the multipliers act, `C` the matrix of the constraint to be met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Saddle<const N: usize, const M: usize> {
     /// `K`.
@@ -28,7 +28,7 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
     /// products, and up to `M` of them have been eliminated.
     pub(crate) const DEPENDENT: f64 = 4.0 * (N + M) as f64 * f64::EPSILON;
 
-    /// `x` and `lambda`, in the given basis of `ker G` where there is one and with the multipliers otherwise.
+    /// Solves for `x` and `lambda`, in the basis of `ker G` if given, else with the multipliers.
     ///
     /// # Errors
     /// [`Singular`] where the equations do not determine a solution.
@@ -37,8 +37,8 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
         self.solve_oriented(basis).map(|(x, lambda, _)| (x, lambda))
     }
 
-    /// The same, and whether the determinant of the equations is positive: of those tested against the basis, with the
-    /// constraints after them, or of all with the multipliers.
+    /// As [`solve`](Self::solve), with a third result: whether the determinant is positive. With a basis this is the determinant of the
+    /// equations tested against the basis, followed by the constraints; else of the equations with multipliers.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
@@ -53,13 +53,14 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
         }
     }
 
-    /// Whether that determinant is positive in a step of length zero, where `K` is minus a positive mass matrix and `C` is
-    /// `G`. On the branch of solutions that begins there it keeps its sign until it vanishes.
+    /// Whether the determinant of [`solve_oriented`](Self::solve_oriented) is positive in a step of length zero, in which `K` is minus a
+    /// positive mass matrix and `C` is `G`. On the branch of solutions that begins there the determinant keeps its sign until it
+    /// vanishes.
     ///
     /// Tested against a basis `w` the matrix is `[-w' M; G]`, which times `[w, M^-1 G']` has the diagonal blocks `-w' M w` and
     /// `G M^-1 G'`; so but for `(-1)^(N-M)` it has the sign of `[w'; G]`, whatever `M`.
     ///
-    /// None where the basis is none, or the rows depend on one another.
+    /// Returns `None` if the basis vectors or the rows depend on one another.
     #[must_use]
     #[inline]
     pub fn is_positive_at_rest(transposed: &[[f64; N]; M], basis: Option<&AdmissibleBasis<f64, N, M>>) -> Option<bool> {
@@ -102,10 +103,10 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
         self.solve_by_schur(None)
     }
 
-    /// The same with some of the rows alone: the others are not met, and their multipliers are zero.
+    /// Solves with some of the rows only: the other rows are not met, and their multipliers are zero.
     ///
     /// # Errors
-    /// [`Singular`] where the equations that are left do not determine a solution.
+    /// [`Singular`] if the remaining equations do not determine a solution.
     #[cold]
     #[inline(never)]
     pub fn solve_some(&self, rows: Rows) -> Result<([f64; N], [f64; M]), Singular> {

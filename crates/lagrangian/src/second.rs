@@ -1,12 +1,12 @@
 use crate::{HyperDual, Scalar, from_fn};
 
-/// Functions of up to so many variables have all their derivatives in one evaluation.
+/// A function of at most `AT_ONCE` variables gets all its derivatives in one evaluation.
 ///
 /// A number that carries all second derivatives has `(N + 1)^2` places, and a function of `N` variables has `N` such numbers: at
 /// 60 variables 1.8 MB, which is a thread's whole stack.
 pub const AT_ONCE: usize = 12;
 
-/// Of functions of more variables the derivatives are taken in so many at a time.
+/// Number of variables per block for functions of more than [`AT_ONCE`] variables.
 pub(crate) const BLOCK: usize = 8;
 
 /// A function of two groups of `N` variables, whose derivatives in each and mixed second derivatives are wanted.
@@ -28,8 +28,9 @@ pub fn seed<S: Scalar, const P: usize>(x: S, i: usize, from: usize) -> [S; P] {
 
 /// Value, gradients and mixed second derivatives of a function.
 ///
-/// Of few variables in one evaluation; of many in blocks, so that the numbers on the stack grow with `N` and not with its cube.
-/// Every entry is the same to the last bit, but that of a symmetric matrix of many variables one half mirrors the other.
+/// Functions of at most [`AT_ONCE`] variables take one evaluation. Others are differentiated in blocks, so that the numbers on the stack
+/// grow with `N` and not with its cube. Both ways give the same bits, except that blocks fill one half of a symmetric matrix from the
+/// other.
 #[must_use]
 #[inline(always)]
 pub fn second_derivatives<S: Scalar, const N: usize>(f: &impl TwiceDifferentiable<S, N>) -> HyperDual<S, N, N> {

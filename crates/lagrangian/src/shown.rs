@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// A number as messages and tables show it: six digits, without zeros at the end, and with an exponent where it would have a long row of zeros.
+/// A number as messages and tables show it: six digits without trailing zeros, with an exponent if it is large or small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown(pub f64);
 

@@ -21,7 +21,7 @@ pub fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
     with_nonlinear(system, Dual::fixed(t), &in_q, &Dual::variables(v), affine)
 }
 
-/// The same of affine constraints, `d(A v + b) = (A + part d(A v + b)/dq) dv`, by derivatives in `W` places.
+/// The residuals of affine constraints, `d(A v + b) = (A + part d(A v + b)/dq) dv`, by derivatives in `W` places.
 #[inline(always)]
 fn affine_along<Sys: System<N, M>, const N: usize, const M: usize, const W: usize>(
     system: &Sys,
@@ -41,7 +41,7 @@ fn affine_along<Sys: System<N, M>, const N: usize, const M: usize, const W: usiz
     })
 }
 
-/// The same of many coordinates, some of them at a time.
+/// As `affine_along`, for many coordinates, some at a time.
 #[inline(never)]
 fn affine_by_blocks<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
@@ -77,7 +77,7 @@ pub fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     by_places!(gradients_by::<Sys, S, N, M>(system, t, q, v))
 }
 
-/// The same by derivatives in `W` places.
+/// The gradients by derivatives in `W` places.
 #[inline(always)]
 fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
     system: &Sys,

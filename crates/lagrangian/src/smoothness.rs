@@ -10,7 +10,7 @@ pub struct Smoothness {
 }
 
 impl Smoothness {
-    /// That of a system.
+    /// The smoothness of a system.
     pub fn of<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys) -> Self {
         let (t, q) = (Traced::TIME, [Traced::STATE; N]);
         let force = system.force(t, &q, &q).unwrap_or([Traced::zero(); N]);

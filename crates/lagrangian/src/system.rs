@@ -36,7 +36,7 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
-    /// A basis of the admissible velocities `ker A(q, t)`, where one is known in closed form.
+    /// A basis of the admissible velocities `ker A(q, t)`, if one is known in closed form.
     ///
     /// A step then solves in it, and needs no multiplier (the discrete null-space method, Betsch 2005,
     /// Comput. Methods Appl. Mech. Engrg. 194, 5159-5190).
@@ -45,11 +45,11 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
-    /// The same system with its basis of admissible velocities for the neighbourhood of a configuration, and the number of that basis, for
-    /// a system whose basis holds near a configuration only. None by default: it holds wherever the system does.
+    /// The system with its basis of admissible velocities for the neighbourhood of a configuration, and the number of this basis, if the
+    /// basis does not hold everywhere. The default `None` means that the basis holds wherever the system does.
     ///
-    /// `basis` is the number of the basis in use, zero where there is none yet. It stays as long as it is well conditioned; the number of
-    /// another, from one to 2^53, says all that is to be known of it.
+    /// `basis` is the number of the basis in use, zero if there is none yet. It stays in use as long as it is well conditioned. The
+    /// number of another basis, from one to 2^53, determines it completely.
     fn near(&self, _t: f64, _q: &[f64; N], _basis: u64) -> Option<(Self, u64)>
     where
         Self: Sized,
@@ -107,7 +107,7 @@ where
     with_nonlinear(system, t, q, v, residual)
 }
 
-/// The residuals of all constraints: `phi(t, q, v)` of those that are not affine, and of the others what is given.
+/// The residuals of all constraints: `phi(t, q, v)` for nonlinear constraints, the given `residual` for affine ones.
 #[inline(always)]
 pub(crate) fn with_nonlinear<Sys, S, const N: usize, const M: usize>(
     system: &Sys,

@@ -3,7 +3,7 @@ use crate::derived::derived_operators;
 use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};
 
-/// No number, but what one is made of: whether zero alone, and whether time or a corner has a part in it.
+/// Whether a number is zero everywhere, and whether it depends on time or has a corner. It carries no value.
 ///
 /// A model has no comparisons of its scalars, so the operations that it makes are the same for all numbers: evaluated once on these, it says
 /// of itself what holds everywhere. An infinite number times zero counts as zero.
@@ -25,12 +25,12 @@ impl Traced {
     /// A coordinate or a velocity.
     pub const STATE: Self = Self { zero: false, of_time: false, corner: false };
 
-    /// What is made of both, and not zero.
+    /// The result of an operation on both operands that may be nonzero.
     fn with(self, other: Self) -> Self {
         Self { zero: false, of_time: self.of_time || other.of_time, corner: self.corner || other.corner }
     }
 
-    /// A function of it that is not zero where it is.
+    /// A function of `self` that may be nonzero even if `self` is zero, as the cosine.
     fn changed(self) -> Self {
         Self { zero: false, ..self }
     }

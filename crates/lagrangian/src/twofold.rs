@@ -2,8 +2,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number as the unevaluated sum `hi + lo`, `|lo|` at most half a unit in the last place of `hi`: some 106 bits.
 ///
-/// The operations are those of Dekker (1971), the products exact by a fused multiply-add. Parts that overflow or
-/// underflow lose the extra digits and nothing else.
+/// The operations follow Dekker (1971), with exact products by a fused multiply-add. If a part overflows or underflows, only the extra
+/// digits are lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twofold {
     /// The number, rounded.
@@ -58,7 +58,7 @@ impl Twofold {
         (self.hi - product.hi) + (self.lo - product.lo)
     }
 
-    /// `hi + lo` for `|lo| <= |hi|`, without `lo` where it is not a number.
+    /// `hi + lo` for `|lo| <= |hi|`; without `lo` if the sum is infinite or NaN.
     fn renormalised(hi: f64, lo: f64) -> Self {
         let sum = hi + lo;
         if sum.is_finite() { Self::new(sum, lo - (sum - hi)) } else { Self::from(hi) }

@@ -1,13 +1,13 @@
 use crate::{AdmissibleBasis, Constraint, Piecewise, Pivots, Scalar, System, mass_matrix};
 use nalgebra::DMatrix;
 
-/// A system with a basis of its admissible velocities by elimination, for one that gives none.
+/// Adds a basis of admissible velocities, found by elimination, to a system without one.
 ///
-/// Each constraint is solved for one rate, at a configuration; the rates that are best conditioned there are chosen, and others are chosen
-/// at a node where these have become bad. The methods that move along a basis so take every system whose constraints are affine and
-/// independent. Up to seven constraints and sixteen coordinates. A step clones the system.
+/// Each constraint is solved for one rate. The pivots are the best conditioned ones at a configuration, and are replaced at a node if they
+/// have become bad there. The methods that move along a basis can thus take every system whose constraints are affine and independent, with
+/// up to seven constraints and sixteen coordinates. A step clones the system.
 ///
-/// A method changes the rates at nodes where it is a `dla::Rebased`, as those made by name are; any other keeps those of the beginning.
+/// A `dla::Rebased` method, as every method made by name is, replaces pivots at nodes; any other method keeps the first ones.
 ///
 /// ```
 /// use lagrangian::{Constraint, Scalar, System, WithBasis};

@@ -6,7 +6,7 @@ use quote::{ToTokens, quote};
 use std::str::FromStr;
 use syn::{Error, Ident, Result};
 
-/// The structure of a system, and what it implements.
+/// The structure of a system with its implementations.
 pub(crate) fn system(described: &Described) -> Result<TokenStream> {
     let fail = |error: TextError| Error::new(described.place(error.entry), error.problem);
     let mut formulas = Formulas::of(&described.words, Parameters::Variables).map_err(fail)?;
@@ -35,7 +35,7 @@ pub(crate) fn system(described: &Described) -> Result<TokenStream> {
     })
 }
 
-/// The structure with the parameters as its fields, their values in the text, and its outputs.
+/// The structure with the parameters as its fields, their default values, and its outputs.
 fn structure(
     described: &Described,
     printer: &Printer<'_>,
@@ -181,7 +181,7 @@ impl Printer<'_> {
         self.all(&[formula], rates, |results| quote!(#(#results)*))
     }
 
-    /// A body that ends with what is made of some formulas; `rates` is the name of what stands in place of rates.
+    /// A body that computes some formulas and ends with `end` of the results. `rates` is the name of the array of rates.
     fn all(
         &self,
         formulas: &[Expression],

@@ -5,28 +5,28 @@ use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
 use syn::{Attribute, Error, Expr, Ident, LitStr, Path, Result, Token, Visibility, braced, bracketed};
 
-/// What the macro was given: the system's texts, and where each of them stands.
+/// The input of the macro: the system's texts with their places.
 pub(crate) struct Described {
     /// The crate `lagrangian`.
     pub(crate) lagrangian: Path,
     pub(crate) kind: Kind,
     pub(crate) name: Ident,
     pub(crate) words: Words,
-    /// The parameters, with what they are: a number of a new structure, an expression of one that is there.
+    /// The parameters: with a number for a new structure, with an expression for an existing one.
     pub(crate) parameters: Vec<(Ident, Expr)>,
     places: Vec<(Entry, Span)>,
 }
 
-/// Which structure is the system.
+/// The structure that becomes the system.
 pub(crate) enum Kind {
-    /// One that is to be made.
+    /// A structure to be made.
     New(Vec<Attribute>, Visibility),
-    /// One that is there.
+    /// An existing structure.
     There,
 }
 
 impl Described {
-    /// The place of an entry; that of the system's name where it has none of its own.
+    /// The place of an entry in the source; the place of the system's name if the entry has none.
     pub(crate) fn place(&self, entry: Entry) -> Span {
         self.places.iter().find(|(other, _)| *other == entry).map_or_else(|| self.name.span(), |(_, span)| *span)
     }
@@ -169,7 +169,7 @@ fn table<T: Parse>(input: ParseStream<'_>) -> Result<Vec<(Ident, T)>> {
     Ok(content.parse_terminated(entry, Token![,])?.into_iter().collect())
 }
 
-/// A name as it stands in formulas.
+/// A name as written in formulas.
 fn plain(name: &Ident) -> String {
     name.unraw().to_string()
 }

@@ -8,17 +8,17 @@ use lagrangian::linear::larger;
 use std::fmt;
 use thiserror::Error;
 
-/// Runs of a system by several methods, as a table where it is printed.
+/// Runs of a system by several methods. Displayed, they are a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What each method did, in the order asked for.
+    /// The run of each method, in the order of the request.
     pub runs: Vec<Record>,
 }
 
-/// Makes the same run by each of these methods, by their names in the table of methods, and measures constraint, energy and time.
+/// Makes the same run by each of these methods, named as in the table of methods, and measures constraint, energy and time.
 ///
 /// # Errors
-/// [`MethodError`] names what is no method. A run that fails is a [`Record`] of the part before.
+/// [`MethodError`] names an unknown method. A run that fails gives a [`Record`] of the part before the failure.
 ///
 /// ```
 /// use noslip::Schedule;
@@ -72,20 +72,20 @@ impl fmt::Display for Comparison {
 /// Why there is no work-precision diagram.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PrecisionError {
-    /// A name is no method.
+    /// A name is not the name of a method.
     #[error(transparent)]
     Method(#[from] MethodError),
-    /// The end of the motion is not known.
+    /// There is no reference for the end of the motion.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
 }
 
-/// What accuracy costs each method in time, as a table where it is printed.
+/// The time that accuracy costs each method. Displayed, it is a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorkPrecision {
     /// The points of each method, from coarse to fine.
     pub curves: Vec<Curve>,
-    /// How far the reference may be off (m or rad).
+    /// Bound on the error of the reference (m or rad).
     pub reference_error: f64,
 }
 
@@ -93,7 +93,7 @@ pub struct WorkPrecision {
 /// `longest` (s) at most. The error is the largest among the coordinates, from a reference of order 16 that is computed first.
 ///
 /// # Errors
-/// [`PrecisionError`] names what is no method, or says why there is no reference.
+/// [`PrecisionError`] names an unknown method, or says why there is no reference.
 ///
 /// ```no_run
 /// # noslip::system! {

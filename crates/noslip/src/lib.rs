@@ -49,11 +49,11 @@ pub use macros;
 
 /// A system from its texts, at compile time.
 ///
-/// The keys and the texts are those of `[system]` in a scene file (the book, *Scene files*), with a structure before them. Its fields are
-/// the parameters, and their values in the text its [`Default`]. It is a [`System`] whose formulas are simplified, on any [`Scalar`]; where
-/// a basis of the admissible velocities is given, or can be seen, its [reduced equations](Reduced) are derived too; for others
-/// [`WithBasis`] derives a basis as it runs. Each of the `outputs`
-/// is a function of time, coordinates and rates. A wrong text is an error of the compiler at its place.
+/// The keys and texts are as in `[system]` of a scene file (the book, *Scene files*), after the name of a structure. Its fields are the
+/// parameters, and [`Default`] gives them their values in the text. It is a [`System`] with simplified formulas, on any [`Scalar`]. If a
+/// basis of the admissible velocities is given or found, its [reduced equations](Reduced) are derived too; otherwise [`WithBasis`]
+/// derives a basis at run time. Each of the `outputs` is a function of time, coordinates and rates. A wrong text is a compiler error at
+/// its place.
 ///
 /// ```
 /// use noslip::{Dla, Schedule, State, System, drive};
@@ -82,12 +82,12 @@ macro_rules! system {
     ($($text:tt)*) => { $crate::macros::system! { $crate::lagrangian; $($text)* } };
 }
 
-/// Makes the steps of a schedule from a start that obeys the constraints, and shows every node to the observer; returns how many steps were
-/// made. As [`dla::drive`], which begins anywhere: its first step leads from a start that slips onto the constraint.
+/// Makes the steps of a schedule from a start that obeys the constraints, and shows every node to the observer. Returns the number of steps
+/// made. [`dla::drive`] accepts any start: its first step leads from a start that slips onto the constraint.
 ///
 /// # Errors
-/// [`StepError::Slips`] where the start does not obey the constraints to six digits, with the residual: [`consistent_start`] gives the
-/// nearest state that does. [`RunError`] with the step that failed; `state` then is the last good node.
+/// [`StepError::Slips`] with the residual, if the start does not obey the constraints to six digits: [`consistent_start`] gives the nearest
+/// state that does. [`RunError`] names the step that failed; `state` is then the last good node.
 pub fn drive<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     method: &mut dyn OneStep<N, M>,
@@ -101,7 +101,7 @@ pub fn drive<const N: usize, const M: usize>(
     }
 }
 
-/// What a program with a system of its own uses: `use noslip::prelude::*`.
+/// The imports of a program with a system of its own: `use noslip::prelude::*`.
 pub mod prelude {
     pub use crate::{
         AdmissibleBasis, Constraint, Dla, OneStep, Reduced, Scalar, Schedule, State, System, Trajectory, WithBasis,
@@ -111,7 +111,7 @@ pub mod prelude {
 }
 
 /// A method by its name in the table of methods: `noslip::method!("gauss16")`. Only the methods that a program names are compiled for its
-/// system. Each changes the basis of a [`WithBasis`] at nodes where that becomes bad. A name that is no method is an error of the compiler.
+/// system. Each method replaces the basis of a [`WithBasis`] at nodes at which it becomes bad. An unknown name is a compiler error.
 ///
 /// ```
 /// use noslip::prelude::*;

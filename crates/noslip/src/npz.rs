@@ -6,7 +6,7 @@ use std::io::{self, Seek, Write};
 /// `metadata` holds the text.
 ///
 /// # Errors
-/// Those of writing.
+/// The errors of the writer.
 ///
 /// ```
 /// use noslip::prelude::*;

@@ -5,22 +5,22 @@ use std::any::Any;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// How often Python is asked for signals, and told of the progress, while work goes on without the interpreter.
+/// Interval at which Python is asked for signals and told of the progress, while work goes on without the interpreter.
 const OFTEN: Duration = Duration::from_millis(10);
 
-/// The stack of the work (bytes), as large as that of a program: methods keep their memory there.
+/// The stack of the work (bytes), as large as a program's stack: methods keep their memory there.
 const STACK: usize = 8 << 20;
 
-/// What came of work that was watched.
+/// The result of supervised work.
 pub(crate) struct Supervised<T> {
-    /// What the work gave; of work that was ended, what it had so far.
+    /// The result; of interrupted work, the part made so far.
     pub(crate) value: T,
-    /// The exception that ended it: `KeyboardInterrupt`, or that of the progress callable.
+    /// The exception that ended the work: `KeyboardInterrupt`, or an exception of the progress callable.
     pub(crate) ended: Option<PyErr>,
 }
 
-/// Does work on another thread, the interpreter released, and looks for Ctrl-C meanwhile; `progress(label, done, of)` is told how far
-/// it has come.
+/// Does work on another thread with the interpreter released, and looks for Ctrl-C meanwhile. `progress(label, done, of)` is called with
+/// the progress of the work.
 pub(crate) fn supervised<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -58,13 +58,13 @@ pub(crate) fn supervised<T: Send>(
     })
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn said(panic: &(dyn Any + Send)) -> &str {
     let literal = panic.downcast_ref::<&str>().copied();
     literal.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
 }
 
-/// Whether Python has something against going on.
+/// Asks Python whether to go on; an error ends the work.
 fn asked(py: Python<'_>, progress: Option<&Py<PyAny>>, caller: &Caller) -> PyResult<()> {
     py.check_signals()?;
     if let (Some(progress), Some(told)) = (progress, caller.progress()) {

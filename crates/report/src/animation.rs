@@ -22,7 +22,7 @@ struct DrawnNode {
     blades: Vec<f64>,
 }
 
-/// The figure; none where no run has two nodes to move between.
+/// The figure; `None` if no run has two nodes to move between.
 pub(crate) fn figure(scene: &SceneReport) -> Option<String> {
     let (method, series) = scene.leading()?;
     let mut ground = view(scene, &[]);

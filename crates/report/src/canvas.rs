@@ -79,7 +79,7 @@ impl Canvas {
         self.fill(&look::cross(), at, Ink::Method(method), 1.0);
     }
 
-    /// A line of text whose middle height is that of the point.
+    /// A line of text, centred vertically on the point.
     pub(crate) fn text(&mut self, text: &str, at: Point, anchor: Anchor, size: f64) {
         self.draw(Shape::Text { text: text.to_owned(), at, anchor, size, upright: false }, Ink::Text, 1.0);
     }

@@ -8,9 +8,9 @@ use super::ticks::{decades, linear, margin};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 420.0;
-/// So many points of a curve at most.
+/// Maximum number of points of a curve.
 const POINTS: usize = 1000;
-/// The colours of dots: those of methods that stand out on white and on black.
+/// Number of colours of dots: the methods' colours that stand out on white and on black.
 const DOTS: usize = 6;
 /// The map viridis: its lightness grows evenly, so that any eye, and a grey print, can order its colours.
 const COLOURS: [&str; 16] = [

@@ -16,7 +16,7 @@ const ORDERS: [i32; 4] = [2, 4, 8, 16];
 pub struct CostCurve {
     /// The name of the method.
     pub label: String,
-    /// Those that have an error and a time.
+    /// The runs that have an error and a time.
     pub points: Vec<CostPoint>,
 }
 

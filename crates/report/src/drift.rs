@@ -24,11 +24,11 @@ const ROUNDING: f64 = -16.0;
 /// The longest name at the end of a line.
 const LONGEST: usize = 17;
 
-/// Values that many decades below the usual ones of the most exact method say no more than that they are small.
+/// Decades that the axis covers at most below the usual values of the most exact method: smaller values say only that they are small.
 const BELOW: f64 = 8.0;
-/// Values that many decades above it say no more than that a method has blown up.
+/// Decades that the axis covers at most above these values: with larger values a method has blown up.
 const ABOVE: f64 = 24.0;
-/// Methods within so many decades of the most exact one are as exact.
+/// Decades within which a method counts as exact as the most exact one.
 const NEAR: f64 = 1.5;
 
 /// What a picture shows.

@@ -132,7 +132,7 @@ impl Figure {
         points.iter().map(|point| self.frame.place(*point)).collect()
     }
 
-    /// What the frame shows of a line, of not too many points where so many are said.
+    /// Draws the part of a line that the frame shows, thinned to about `most` points if given.
     pub(crate) fn line(&mut self, places: &[Option<Point>], most: Option<usize>, (ink, opacity, width): Pen) {
         let lines = self.frame.lines(places.iter().copied());
         let lines = if let Some(most) = most { thin(lines, most) } else { lines };
@@ -141,7 +141,7 @@ impl Figure {
         }
     }
 
-    /// A few markers along a line, so far apart, at other places for each of so many methods.
+    /// Draws up to `count` markers along a line, at least `apart` from each other, at places that differ between the `methods` methods.
     pub(crate) fn markers(&mut self, places: &[Option<Point>], method: usize, methods: usize, count: u32, apart: f64) {
         let last = places.len().saturating_sub(1) as f64;
         let mut before: Option<Point> = None;

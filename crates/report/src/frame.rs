@@ -68,7 +68,7 @@ pub(crate) fn visible(half: f64, largest: f64) -> f64 {
 pub(crate) enum Scale {
     #[default]
     Plain,
-    /// As their decades; what is below the decade lies on it.
+    /// As decimal logarithms. Values below the given decade lie on it.
     Decades(f64),
 }
 
@@ -102,7 +102,7 @@ impl Frame {
         self.top + self.height
     }
 
-    /// Where the point of two numbers lies in the picture; nowhere if it cannot be drawn.
+    /// The place in the picture of the point with these two numbers; `None` if it cannot be drawn.
     pub(crate) fn place(&self, [x, y]: [f64; 2]) -> Option<Point> {
         self.at([self.scales[0].of(x), self.scales[1].of(y)])
     }

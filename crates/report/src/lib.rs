@@ -79,7 +79,7 @@ pub struct SceneReport {
     pub rows: Vec<Vec<String>>,
     /// The runs that the pictures show, one per method.
     pub series: Vec<Series>,
-    /// The blade's exact path \[m\], where one is known.
+    /// The blade's exact path \[m\], if known.
     pub exact_path: Option<Vec<[f64; 2]>>,
     /// What else is shown against time, a panel below the other, as the picture `NAME-run`.
     pub figure: Option<Sheet>,
@@ -113,7 +113,7 @@ pub struct Series {
     pub path: Vec<[f64; 2]>,
     /// The heading \[rad\].
     pub heading: Vec<f64>,
-    /// The angle of a rotor relative to the sleigh \[rad\]; empty where there is none.
+    /// The angle of a rotor relative to the sleigh \[rad\]; empty without a rotor.
     pub rotor: Vec<f64>,
     /// The places \[m\] and headings \[rad\] of the blades behind it, one list after the other, each of all nodes; empty where
     /// none follows.
@@ -143,7 +143,7 @@ impl SceneReport {
         self.series.iter().enumerate().filter(|(_, series)| series.is_drawn())
     }
 
-    /// The runs that pictures are scaled to: those that did not blow up; all of them where all did.
+    /// The runs whose range the pictures show: all runs that did not blow up, or all runs if every one did.
     fn scaling(&self) -> impl Iterator<Item = &Series> {
         let all = self.drawn().all(|(_, series)| series.diverged);
         self.drawn().map(|(_, series)| series).filter(move |series| all || !series.diverged)
@@ -154,7 +154,7 @@ impl SceneReport {
         self.drawn().find(|(_, series)| !series.failed && !series.diverged).or_else(|| self.drawn().next())
     }
 
-    /// The exact path, where it has points.
+    /// The points of the exact path; `None` if there are none.
     fn exact(&self) -> Option<&[[f64; 2]]> {
         self.exact_path.as_deref().filter(|path| !path.is_empty())
     }
@@ -164,7 +164,7 @@ impl SceneReport {
         self.drawn().map(|(method, series)| (Ink::Method(method), series.label.as_str())).collect()
     }
 
-    /// What a caption says of the runs whose curves leave the picture, and of those that failed.
+    /// The caption's remarks on runs whose curves leave the picture, and on failed runs.
     fn remarks(&self, leaves: impl Fn(usize) -> bool) -> String {
         let strays = self.series.iter().enumerate().filter(|(method, _)| leaves(*method));
         let strays: Vec<&str> = strays.map(|(_, series)| series.label.as_str()).collect();

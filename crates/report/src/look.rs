@@ -2,8 +2,8 @@
 
 use super::canvas::Point;
 
-/// Colours of Okabe and Ito, darker where a thin line would not stand out on white, and as far apart to a colour-blind eye;
-/// the last is that of the text. On a dark page `style.css` puts the colours of Okabe and Ito themselves in their places.
+/// Colours of Okabe and Ito, darker if a thin line would not stand out on white, and as far apart to a colour-blind eye. The last is the
+/// colour of the text. On a dark page `style.css` restores the colours of Okabe and Ito themselves.
 const COLOURS: [&str; 7] = ["#005B96", "#B04400", "#008F66", "#CF6FA5", "#C08600", "#3C9CDA", "currentColor"];
 
 /// The colour of text on a ground of the picture's own.
@@ -21,7 +21,7 @@ pub(crate) const LOOKS: usize = COLOURS.len() * DASHES.len();
 pub(crate) enum Ink {
     /// The colour of text.
     Text,
-    /// The colour of text, thin dashes: what is known without computing.
+    /// The colour of text, thin dashes: the exact motion.
     Exact,
     /// The look of a method.
     Method(usize),
@@ -30,7 +30,7 @@ pub(crate) enum Ink {
 }
 
 impl Ink {
-    /// The colour; that of the text around the picture is `currentColor`.
+    /// The colour. `currentColor` means the colour of the text around the picture.
     pub(crate) fn colour(self) -> &'static str {
         match self {
             Self::Text | Self::Exact => "currentColor",

@@ -25,7 +25,7 @@ impl Outliner<'_> {
         Ok(Self { face, scale })
     }
 
-    /// The path of a shape: of a line what a pen follows, else what is filled.
+    /// The path of a shape: the path of a pen for a line, else the outline to be filled.
     pub(crate) fn path(&self, shape: &Shape) -> Vec<Command> {
         let mut path = Vec::new();
         let mut outline = |points: &[Point], closed: bool| {

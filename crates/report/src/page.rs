@@ -19,7 +19,7 @@ pub(crate) struct ShownScene<'a> {
     pub(crate) name: &'a str,
     /// The paths, the constraint, the energy, and what else is shown against time; or what accuracy costs.
     pub(crate) figures: Vec<Figure>,
-    /// The figure that moves, where there is one.
+    /// The figure that moves, if there is one.
     pub(crate) animation: Option<String>,
 }
 
@@ -209,7 +209,7 @@ fn table(
     *page += "</tbody>\n</table></div>\n";
 }
 
-/// How many columns the last cell of a row takes, where it takes more than its own.
+/// The number of columns that the last cell of a short row spans; `None` if the row is full.
 fn spanned(row: &[String], width: usize) -> Option<usize> {
     (!row.is_empty() && row.len() < width).then(|| width + 1 - row.len())
 }

@@ -11,7 +11,7 @@ use zeno::Command;
 /// Points of 1/72 inch to a unit of the picture, of which an inch has 96.
 const POINTS: f64 = 0.75;
 
-/// The bytes of the file, with the picture so many times as large as it was drawn.
+/// The bytes of a PDF file with the picture scaled by `scale`.
 pub(crate) fn pdf(size: [f64; 2], title: &str, marks: &[Mark], scale: f64) -> Result<Vec<u8>, ReportError> {
     let outliner = Outliner::new(1.0)?;
     let mut content = Content::new();

@@ -36,7 +36,7 @@ impl Figure {
         Ok([(format!("{}.svg", self.file), self.svg(1.0).into_bytes()), (format!("{}.png", self.file), png)])
     }
 
-    /// The bytes of a file of that format, with so many pixels to an inch, and the picture `scale` times as large as it was drawn.
+    /// The bytes of a file of this format, with `dpi` pixels to an inch. The picture is scaled by `scale`.
     pub(crate) fn bytes(&self, format: FigureFormat, dpi: f64, scale: f64) -> Result<Vec<u8>, ReportError> {
         let marks = &self.canvas.marks;
         match format {

@@ -7,7 +7,7 @@ use super::outlines::Outliner;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use zeno::{Cap, Command, Join, Scratch, Stroke, Style};
 
-/// A picture has so many pixels at most, each of which takes six bytes and more while it is drawn.
+/// Maximum number of pixels of a picture. Drawing takes more than six bytes for each.
 pub const MOST_PIXELS: f64 = 1.5e8;
 
 /// How hard to compress: pictures are mostly ground, of which the lower levels make little already.
@@ -16,7 +16,7 @@ pub(crate) const LEVEL: u8 = 6;
 const UP: u8 = 2;
 const METRES_PER_INCH: f64 = 0.0254;
 
-/// The bytes of a PNG file, with so many pixels to a unit of the picture; the file says how many to an inch.
+/// The bytes of a PNG file with `scale` pixels to a unit of the picture. The file records `dpi` (pixels to an inch).
 pub(crate) fn png(size: [f64; 2], marks: &[Mark], scale: f64, dpi: f64) -> Result<Vec<u8>, ReportError> {
     let [width, height] = size.map(|length| (length * scale).round());
     if width * height > MOST_PIXELS {

@@ -12,7 +12,7 @@ use super::ticks::{Tick, decades, linear, margin, whole_decades};
 use std::borrow::Cow;
 
 const CENTIMETRES_PER_INCH: f64 = 2.54;
-/// So many points of a curve at most, and of one on a logarithmic axis, each the largest of a stretch.
+/// Maximum number of points of a curve, and of a curve on a logarithmic axis, each the largest value of a stretch.
 const POINTS: usize = 2000;
 const PEAKS: usize = 120;
 /// Room below the frame of a panel, above it and to the right; and between figures and title of an upright axis.

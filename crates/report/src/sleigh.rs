@@ -26,12 +26,12 @@ const RIM: f64 = 4.6;
 /// How wide the lines are of the body, of its blade, and of a blade behind it.
 const WIDTHS: [f64; 3] = [1.1, 2.6, 2.2];
 
-/// How many times the sleigh is drawn, where there is room for it.
+/// Number of times that the sleigh is drawn, if there is room.
 const SLEIGHS: usize = 9;
-/// How far apart sleighs have to be, so that each can be seen.
+/// Least distance between two drawn sleighs, so that each can be seen.
 pub(crate) const APART: f64 = 32.0;
 
-/// Where a place on the ground lies, if it is seen.
+/// The place of a point on the ground in the picture, if it lies in the frame.
 fn seen(frame: &Frame, [x, y, heading]: [f64; 3]) -> Option<Point> {
     frame.place([x, y]).filter(|place| heading.is_finite() && frame.holds(*place))
 }
@@ -42,7 +42,7 @@ fn turned<const K: usize>(shape: [[f64; 2]; K], [x, y]: Point, heading: f64) -> 
     shape.map(|[ahead, left]| [x + ahead * cos - left * sin, y - ahead * sin - left * cos])
 }
 
-/// The sleigh at equally spaced times, except where it would hide itself, and the start.
+/// Draws the sleigh at equally spaced times, except those at which it would cover itself, and marks the start.
 pub(crate) fn sleighs(canvas: &mut Canvas, frame: &Frame, series: &Series) {
     let nodes = series.path.len().min(series.heading.len());
     let mut drawn: Vec<Point> = Vec::new();
@@ -75,7 +75,7 @@ pub(crate) fn sleighs(canvas: &mut Canvas, frame: &Frame, series: &Series) {
     start(canvas, frame, series);
 }
 
-/// The word beside the start where it is farthest from the path: behind the sleigh, ahead of it, or to a side.
+/// Writes "start" beside the start at the place farthest from the path: behind the sleigh, ahead of it, or to a side.
 fn start(canvas: &mut Canvas, frame: &Frame, series: &Series) {
     let Some(place) = series.path.first().and_then(|[x, y]| seen(frame, [*x, *y, 0.0])) else { return };
     let heading = series.heading.first().copied().filter(|heading| heading.is_finite()).unwrap_or(0.0);
@@ -103,7 +103,7 @@ fn start(canvas: &mut Canvas, frame: &Frame, series: &Series) {
     }
 }
 
-/// The nodes nearest to equally spaced times; equally spaced nodes where the times do not increase.
+/// The nodes nearest to equally spaced times, or equally spaced nodes if the times do not increase.
 fn moments(time: &[f64], nodes: usize) -> Vec<usize> {
     let ordered = time.len() >= nodes && time.iter().take(nodes).is_sorted_by(|a, b| a <= b);
     let Some(last) = nodes.checked_sub(1) else { return Vec::new() };

@@ -10,12 +10,12 @@ type Polylines = Vec<Vec<Point>>;
 /// The time and the size of each peak, in order; nothing where the values are not finite.
 pub(crate) type Trace = Vec<Option<[f64; 2]>>;
 
-/// How far a line may pass by a point that is left out: less than anti-aliasing shows.
+/// Largest distance of a line from a point that is left out: less than anti-aliasing shows.
 const BESIDE: f64 = 0.15;
 
-/// Leaves out points that lie closer to their predecessor than the eye can tell, or on the straight line between others;
-/// where more than `most` are left before the latter, also what lies on itself, as in a circle run through a thousand
-/// times, and then points a little further apart.
+/// Leaves out points closer to their predecessor than the eye can tell, or on the straight line between others. If more than `most`
+/// points remain before the second rule, also leaves out lines that repeat themselves, as a circle run through a thousand times, and then
+/// points a little further apart.
 pub(crate) fn thin(lines: Polylines, most: usize) -> Polylines {
     let mut lines = few(lines, most);
     lines.iter_mut().for_each(straighten);
@@ -39,7 +39,7 @@ fn few(lines: Polylines, most: usize) -> Polylines {
     thinned
 }
 
-/// Leaves out points beside which the line passes all the same (Ramer 1972; Douglas and Peucker 1973).
+/// Leaves out points that the line passes without them too (Ramer 1972; Douglas and Peucker 1973).
 fn straighten(line: &mut Vec<Point>) {
     let mut kept = vec![false; line.len()];
     let mut pieces = vec![(0, line.len().saturating_sub(1))];
@@ -106,10 +106,10 @@ fn first_visits(lines: Polylines) -> Polylines {
     fresh
 }
 
-/// At most `most` points, each the largest value of an equally long stretch at the time where it occurs.
+/// At most `most` points, each the largest value of an equally long stretch, at its own time.
 ///
-/// So no peak is lost, however long the series; what is lost is how far the values fall in between. Values that are
-/// not finite are left out, and a stretch without any other value is a gap.
+/// This keeps every peak, however long the series, but not how far the values fall in between. Values that are not finite are left
+/// out, and a stretch without any other value is a gap.
 pub(crate) fn peaks(time: &[f64], values: &[f64], most: usize) -> Trace {
     let nodes = time.len().min(values.len());
     let stretch = nodes.div_ceil(most.max(1)).max(1);

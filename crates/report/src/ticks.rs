@@ -4,7 +4,7 @@ use super::canvas::text_width;
 use super::figure::SIZE;
 use super::frame::Span;
 
-/// A tick: where it is and what it says.
+/// A tick: its place on the axis and its label.
 pub(crate) type Tick = (f64, String);
 
 /// About `wanted` ticks at round numbers.
@@ -18,12 +18,12 @@ pub(crate) fn linear(span: Span, wanted: f64) -> Vec<Tick> {
     multiples.map(|multiple| (multiple * step, number(multiple * step, step, largest))).collect()
 }
 
-/// The same, and at most so many, whose figures on an axis of that width do not run into each other.
+/// At most `most` ticks at round numbers, so few that their labels do not overlap on an axis of this width.
 pub(crate) fn across(span: Span, width: f64, most: f64) -> Vec<Tick> {
     linear(span, (width / (1.4 * margin(&linear(span, 6.0)))).clamp(2.0, most))
 }
 
-/// Ticks at whole decades, of their logarithms, about so many at most; none within `free` of their distance from the lower end.
+/// Ticks at whole decades, about `most` at most, for a `span` in decades. No tick lies within `free` tick distances of the lower end.
 pub(crate) fn decades(span: Span, most: f64, free: f64) -> Vec<Tick> {
     let rough = (span.hi - span.lo) / most;
     let every = [1.0, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|every| *every >= rough).unwrap_or(100.0);

@@ -83,7 +83,7 @@ fn inverse_square_of_cosh<S: Scalar>(x: S) -> S {
     e * 4.0 / (sum * sum)
 }
 
-/// The sign, of zero zero, and not a number of what is none.
+/// The sign: 1, -1, zero for zero, and NaN for NaN.
 fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0

@@ -17,7 +17,7 @@ fn sum_of_squares<const K: usize>(x: &[f64; K], scale: f64) -> f64 {
     sum
 }
 
-/// The same where the sum of the squares is not good: in units of the power of two below the largest component.
+/// The length if the sum of the squares overflows or underflows: computed in units of the power of two below the largest component.
 #[cold]
 #[inline(never)]
 fn scaled<const K: usize>(x: &[f64; K], sum: f64) -> f64 {

@@ -52,28 +52,28 @@ pub trait Scalar:
     /// A function given by its value and first two derivatives.
     #[must_use]
     fn apply<F: ScalarFunction>(self, f: F) -> Self;
-    /// `then` where this number is positive, `otherwise` where it is zero, negative or not a number, with their derivatives. What is
-    /// not chosen may be anything.
+    /// `then` if this number is positive, `otherwise` if it is zero, negative or NaN; each with its derivatives. The number that is not
+    /// chosen may be anything.
     #[must_use]
     fn where_positive(self, then: Self, otherwise: Self) -> Self;
-    /// The length `sqrt(x_0^2 + x_1^2 + ..)` of a vector, whose squares may be too large or too small for a number.
+    /// The length `sqrt(x_0^2 + x_1^2 + ..)` of a vector, without overflow or underflow of the squares.
     ///
-    /// The derivative in `x_i` is `x_i/|x|`, the second `(delta_ij - x_i x_j/|x|^2)/|x|`. Where the vector vanishes both are zero: of
-    /// all slopes of planes that touch the cone from below the shortest one (the subgradient of least norm). So `v |v|` has the
+    /// The derivative in `x_i` is `x_i/|x|`, the second `(delta_ij - x_i x_j/|x|^2)/|x|`. At a zero vector both count as zero: zero is
+    /// the shortest of all slopes of planes that touch the cone from below (the subgradient of least norm). So `v |v|` has the
     /// derivative zero at rest, which is the true one. The second derivative counts as zero below the smallest normal number too.
     #[must_use]
     fn length<const K: usize>(components: &[Self; K]) -> Self;
     /// The angle of the vector `(x, self)` from the first axis (rad), from `-pi` to `pi`.
     ///
-    /// The derivatives are those of the angle, and finite across the half-axis where it jumps by `2 pi`. Where the vector vanishes
-    /// there is none, and all are zero.
+    /// The derivatives of the angle are finite across the half-axis at which it jumps by `2 pi`. A zero vector has no angle, and all
+    /// derivatives count as zero.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
 
-    /// Whether the number and all of its derivatives vanish.
+    /// Whether the number and all its derivatives are zero.
     fn is_zero(&self) -> bool;
 
-    /// Whether it is a number in vector registers.
+    /// Whether the type is a number in vector registers.
     const IN_REGISTERS: bool = false;
 
     /// An array by its places. Numbers in vector registers inline it and what it calls, since in a function that remains a call
@@ -90,14 +90,14 @@ pub trait Scalar:
         items.iter().fold(start, f)
     }
 
-    /// `f()`, inlined as [`array`](Self::array) is: else it may stay a function, which is compiled once for all that call it.
+    /// `f()`, inlined as [`array`](Self::array) is. Other numbers may keep it as a function, compiled once for all callers.
     #[must_use]
     fn apart<T>(f: impl FnOnce() -> T) -> T {
         f()
     }
 
-    /// `f(self)` as a function that is compiled once for all that call it, in vector registers too, where a call costs some nanoseconds. How
-    /// the result is [carried](Self::carried_as) is then not known to who calls.
+    /// `f(self)` as a function compiled once for all callers, in vector registers too, for which a call costs some nanoseconds. The
+    /// caller then does not know how the result is [carried](Self::carried_as).
     #[must_use]
     #[inline(always)]
     fn called<T>(self, f: impl FnOnce(Self) -> T) -> T {
@@ -107,7 +107,8 @@ pub trait Scalar:
         )
     }
 
-    /// `f(self, vectors)` as a function in the same way: numbers in vector registers are all carried as eight, those of the result too.
+    /// `f(self, vectors)` as a function, as by [`called`](Self::called). Numbers in vector registers are all carried as eight, in the
+    /// result too.
     #[must_use]
     #[inline(always)]
     fn called_on<const N: usize, const K: usize>(
@@ -121,16 +122,15 @@ pub trait Scalar:
         )
     }
 
-    /// Sine and cosine as a function in the same way.
+    /// Sine and cosine as a function, as by [`called`](Self::called).
     #[must_use]
     #[inline(always)]
     fn sin_cos_called(self) -> (Self, Self) {
         self.sin_cos()
     }
 
-    /// The same number, carried as the other is. Numbers in vector registers are told apart, when a model is compiled, from those
-    /// that all eight have in common; where a run decides which of the two a number is, every operation after it would be there
-    /// for both.
+    /// This number, carried in the form of `_other`. A model compiles numbers in vector registers in two forms: eight numbers, or one
+    /// number common to all eight. If only a run could decide the form, every later operation would be compiled for both.
     #[must_use]
     #[inline(always)]
     fn carried_as(self, _other: Self) -> Self {
@@ -214,26 +214,24 @@ pub trait Scalar:
     fn sign(self) -> Self {
         self.apply(Sign)
     }
-    /// `x^p` with a constant exponent, not a number for `x < 0` unless `p` is whole.
+    /// `x^p` with a constant exponent; NaN for `x < 0` unless `p` is whole.
     ///
-    /// The derivative is `p x^(p - 1)`, the second `p (p - 1) x^(p - 2)`: at zero 0 where the power that is left is positive, infinite
-    /// where it is negative. So the derivative at zero is finite for `p >= 1` and `p = 0`, the second for `p >= 2`, `p = 1` and
-    /// `p = 0`.
+    /// The derivative is `p x^(p - 1)`, the second `p (p - 1) x^(p - 2)`. At `x = 0` each is 0 if its power of `x` is positive, and
+    /// infinite if its power is negative. So the derivative at zero is finite for `p >= 1` and `p = 0`, the second for `p >= 2`, `p = 1`
+    /// and `p = 0`.
     #[must_use]
     #[inline(always)]
     fn powf(self, p: f64) -> Self {
         self.apply(Power(p))
     }
-    /// The smaller of two numbers; not a number where one is none. Derivatives are those of the smaller, and where both are equal the
-    /// mean of the two.
+    /// The smaller of two numbers with its derivatives; NaN if either is NaN. Equal numbers give the mean of their derivatives.
     #[must_use]
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         let mean = self * 0.5 + other * 0.5;
         (other - self).where_positive(self, (self - other).where_positive(other, mean))
     }
-    /// The larger of two numbers; not a number where one is none. Derivatives are those of the larger, and where both are equal the
-    /// mean of the two.
+    /// The larger of two numbers with its derivatives; NaN if either is NaN. Equal numbers give the mean of their derivatives.
     #[must_use]
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -242,8 +240,8 @@ pub trait Scalar:
     }
 }
 
-/// The exponential. Where it is zero to the last bit the mathematics library would report an underflow, which takes the time of ten
-/// exponentials: of hills, everywhere but near them.
+/// The exponential. An `x` whose exponential rounds to zero skips the mathematics library: reporting the underflow would take the time
+/// of ten exponentials, for hills everywhere but near them.
 #[inline(always)]
 pub fn exponential(x: f64) -> f64 {
     // Half of the least number there is lies at -745.13.
@@ -255,7 +253,7 @@ impl Scalar for f64 {
     fn constant(x: f64) -> Self {
         x
     }
-    /// Of an angle within half a turn no call, between the parts of which nothing could be done.
+    /// Inlined for an angle within half a turn: operations can then be interleaved, which a call would prevent.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         crate::sin_cos_wrapped(self)

@@ -72,7 +72,8 @@ pub fn sin_cos_wrapped(x: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine from those of the angle within its quadrant, whose number is in the lowest bits.
+/// Sine and cosine of an angle, from sine and cosine of its part within a quadrant. The lowest bits of `quadrant` hold the quadrant's
+/// number.
 #[inline(always)]
 fn turned(sin: f64, cos: f64, quadrant: u64) -> (f64, f64) {
     let odd = quadrant & 1 != 0;

@@ -4,7 +4,7 @@ use crate::finding::{Excerpt, Place};
 use crate::keys;
 use std::ops::Range;
 
-/// The text of a scene and where it comes from: turns byte ranges into places.
+/// The text of a scene and its origin. Turns byte ranges into line and column.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Document<'s> {
     pub(crate) origin: &'s str,

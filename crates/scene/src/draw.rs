@@ -18,7 +18,7 @@ pub(crate) enum Draw {
 }
 
 impl Draw {
-    /// Reads `{ uniform = [a, b] }` and the like; the error says what is wrong with it.
+    /// Reads `{ uniform = [a, b] }` and the like. An error names the problem, as "is not a distribution".
     pub(crate) fn read(value: &DeValue<'_>) -> Result<Self, &'static str> {
         const NONE: &str = "is not a distribution";
         let table = value.as_table().filter(|table| table.len() == 1).ok_or(NONE)?;
@@ -55,7 +55,7 @@ impl Draw {
 pub(crate) struct Stream(u64);
 
 impl Stream {
-    /// Of a seed alone.
+    /// The stream of a seed alone.
     pub(crate) fn of(seed: u64) -> Self {
         Self(mixed(seed))
     }

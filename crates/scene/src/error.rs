@@ -4,8 +4,8 @@ use thiserror::Error;
 
 /// Why there is no scene.
 ///
-/// Displayed, an error of a file is the line at fault with the place marked, under a headline that names the field and
-/// above a note on what is accepted there; it ends without a line break.
+/// Displayed, an error of a file is a headline that names the field, the line at fault with the place marked, and a note on the
+/// accepted values. It ends without a line break.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -73,7 +73,7 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Where in the text the error is and what is accepted there; `None` when there is no text.
+    /// The place of the error in the text and the accepted values; `None` if there is no text.
     #[must_use]
     pub fn finding(&self) -> Option<&SceneFinding> {
         match self {
@@ -89,7 +89,7 @@ impl SceneError {
         }
     }
 
-    /// The same, to be changed.
+    /// As [`finding`](Self::finding), mutable.
     pub(crate) fn finding_mut(&mut self) -> Option<&mut SceneFinding> {
         match self {
             Self::Syntax(finding)

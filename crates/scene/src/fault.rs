@@ -16,7 +16,7 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
-    /// Of a run in which formulas of time turn more often than can be told.
+    /// The fault of a run with more corners of formulas of time than can be found.
     pub(crate) fn too_many_corners(duration: f64) -> Self {
         Self {
             variant: SceneError::OutOfRange,

@@ -97,8 +97,8 @@ pub(crate) fn scene_of_sweep(origin: &str, name: &str) -> String {
     if bundled::named(name).is_none() && place.exists() { name_of_path(place.as_os_str()) } else { name.to_owned() }
 }
 
-/// The files that are read for a scene or a sweep of that name or path: its own, that of the scene of a sweep, and those of points. None of a
-/// bundled scene, and none that is not there.
+/// The existing files that a scene or sweep reads: its own file, the file of a sweep's scene, and files of points. A bundled scene has
+/// none.
 #[must_use]
 pub fn files_of(name_or_path: &str) -> Vec<PathBuf> {
     let (mut files, scene) = files_in(name_or_path);
@@ -107,7 +107,7 @@ pub fn files_of(name_or_path: &str) -> Vec<PathBuf> {
     files
 }
 
-/// The file of that name or path with those of points, and the scene that it names, as a sweep does.
+/// The file of this name or path with its files of points, and the scene that a sweep names.
 fn files_in(name_or_path: &str) -> (Vec<PathBuf>, Option<String>) {
     let own = path_of(name_or_path);
     if name_or_path == "-" || bundled::named(name_or_path).is_some() || !own.is_file() {
@@ -119,7 +119,7 @@ fn files_in(name_or_path: &str) -> (Vec<PathBuf>, Option<String>) {
     (files, table.get("scene").and_then(Value::as_str).map(str::to_owned))
 }
 
-/// The files of points that a value names, wherever in it.
+/// Adds the files of points that a value names, at any depth.
 fn points_of(origin: &str, value: &Value, files: &mut Vec<PathBuf>) {
     match value {
         Value::Array(values) => values.iter().for_each(|value| points_of(origin, value, files)),

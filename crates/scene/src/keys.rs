@@ -29,7 +29,7 @@ pub(crate) const TABLES: &[(&str, &[&str])] = &[
     ("run", &["method", ALPHA.key, TOLERANCE.key, STEP.key, DURATION.key]),
 ];
 
-/// What the value of the key of that path may be; `None` for tables and for what is no key of a scene.
+/// The accepted values of the key with this path; `None` for tables and for unknown keys.
 pub(crate) fn accepted(field: &str) -> Option<String> {
     if matches!(field, "title" | "run.method") {
         return Some("a string in quotes".to_owned());
@@ -44,7 +44,7 @@ pub(crate) fn of(path: &str) -> &'static [&'static str] {
     TABLES.iter().find(|(table, _)| *table == path).map_or(&[], |(_, keys)| keys)
 }
 
-/// The other table that has this key.
+/// The table that has this key.
 pub(crate) fn home(key: &str) -> Option<&'static str> {
     TABLES.iter().find(|(_, keys)| keys.contains(&key)).map(|(table, _)| *table)
 }

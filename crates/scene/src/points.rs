@@ -6,11 +6,11 @@ use crate::file;
 pub(crate) enum Fault {
     /// The file cannot be read, or a value in it is not a number.
     File(String),
-    /// It has no such column.
+    /// The file has no column of this name.
     Column {
-        /// Which one.
+        /// The problem.
         problem: String,
-        /// Those that it has.
+        /// The columns of the file.
         known: String,
     },
 }

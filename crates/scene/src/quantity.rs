@@ -38,7 +38,7 @@ impl KeyQuantity {
         Self { key, unit: "", range: AcceptedRange::Fraction }
     }
 
-    /// The same kind of number under another key.
+    /// The quantity under another key.
     pub(crate) const fn named(self, key: &'static str) -> Self {
         Self { key, ..self }
     }

@@ -19,7 +19,7 @@ impl<'s> TomlTable<'s> {
         self.get(quantity.key).map(|value| self.list(quantity, value)).transpose()
     }
 
-    /// The same, where a number alone is a list of one.
+    /// As [`numbers`](Self::numbers); a single number counts as a list of one.
     pub(crate) fn number_or_numbers(&self, quantity: &KeyQuantity) -> Result<Option<Vec<f64>>, SceneError> {
         let Some(value) = self.get(quantity.key) else { return Ok(None) };
         match as_f64(value.get_ref()) {
@@ -141,7 +141,7 @@ impl<'s> TomlTable<'s> {
         entries.iter().map(vertex).collect()
     }
 
-    /// The error of a value that makes no sense where it is.
+    /// The error for a value of the right type that makes no sense for its key.
     pub(crate) fn wrong(&self, key: &'static str, problem: &str, accepted: String) -> SceneError {
         let problem = problem.to_owned();
         self.fail(Fault { variant: SceneError::OutOfRange, key, problem, found: None, accepted, help: None })

@@ -9,10 +9,10 @@ use crate::table::TomlTable;
 /// The method of a scene that names none.
 pub const DEFAULT_METHOD: &str = "dla";
 
-/// The most steps that a run may have.
+/// Maximum number of steps in a run.
 pub const MAX_STEPS: u64 = 1_000_000_000_000;
 
-/// Settings of a run in place of those of a file, where they are given: method, step and duration in s, and alpha.
+/// Settings that replace settings of a file, if given: method, step and duration (s), and alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Overrides<'a> {
     /// The method.
@@ -42,7 +42,7 @@ impl Overrides<'_> {
         flag_error(fault, given, name)
     }
 
-    /// The same, at its place in the table `[run]` where no flag is given.
+    /// As `error`, but without a flag the error is at its place in the table `[run]`.
     pub(crate) fn error_in(&self, table: &TomlTable<'_>, fault: Fault, name: &str) -> SceneError {
         if self.have(fault.key) { flag_error(fault, true, name) } else { table.fail(fault) }
     }
@@ -72,16 +72,16 @@ pub struct RunSettings {
 impl RunSettings {
     /// Number of steps of the run, at least 1.
     ///
-    /// It is the ratio `duration / step` where that is whole to within `1e-9`, or to within its own rounding error if
-    /// that is more, and otherwise the next whole number.
+    /// The number is the ratio `duration / step` if that ratio is whole to within `1e-9`, or to within its own rounding error if
+    /// that is more; otherwise the next whole number.
     #[must_use]
     pub fn steps(&self) -> u64 {
         // Of settings that were never checked, `max` drops a NaN and the conversion saturates.
         self.schedule().0.max(1.0) as u64
     }
 
-    /// The step that the run takes, in s: `step` itself, to the last bit, where `steps() * step` is `duration` but for
-    /// the tolerance of [`steps`](Self::steps), otherwise `duration / steps()`.
+    /// The step that the run takes (s): `step` itself, to the last bit, if `steps() * step` is `duration` within the tolerance of
+    /// [`steps`](Self::steps); otherwise `duration / steps()`.
     #[must_use]
     pub fn actual_step(&self) -> f64 {
         match self.schedule() {
@@ -90,7 +90,7 @@ impl RunSettings {
         }
     }
 
-    /// The number of steps, and whether the duration is that multiple of the step.
+    /// The number of steps, and whether the duration is a multiple of the step.
     fn schedule(&self) -> (f64, bool) {
         let ratio = self.duration / self.step;
         let nearest = ratio.round();
@@ -100,8 +100,8 @@ impl RunSettings {
         if (ratio - nearest).abs() <= tolerance { (nearest, true) } else { (ratio.ceil(), false) }
     }
 
-    /// Reads `[run]`: `step` and `duration` are required. Only what holds after the command line has to go together. `name` is that of the
-    /// scene.
+    /// Reads `[run]`: `step` and `duration` are required. Consistency is checked after the overrides of the command line. `name` is the
+    /// name of the scene.
     pub(crate) fn read(
         table: &TomlTable<'_>,
         overrides: &Overrides<'_>,

@@ -40,7 +40,7 @@ impl Scene {
         Self::parse_with(text, origin, methods, &Overrides::default())
     }
 
-    /// The same with other settings of the run: only what then holds has to go together.
+    /// Parses a scene and replaces settings of its run. Consistency is checked after the replacement.
     ///
     /// # Errors
     /// As [`parse`](Self::parse), and as [`with_overrides`](Self::with_overrides).
@@ -96,7 +96,7 @@ impl Scene {
         TEMPLATE
     }
 
-    /// The scene with other settings of its run, where they are given: method, step and duration in s, and alpha.
+    /// The scene with the given settings of its run replaced: method, step and duration (s), and alpha.
     ///
     /// # Errors
     /// [`SceneError`] when the settings are not valid together, as for a file; its field is the flag `--method`,
@@ -175,11 +175,10 @@ impl Scene {
     }
 }
 
-/// More jumps than so many are not kept.
+/// Maximum number of corners of a tracer's path in a run.
 const MOST_JUMPS: f64 = 1e6;
 
-/// A system of text where a sleigh is needed.
-/// Reads the tables of a scene's text, of whichever kind the scene is.
+/// Reads the tables of a scene's text, whichever kind the scene is.
 pub(crate) fn opened<T>(
     text: &str,
     origin: &str,

@@ -22,7 +22,7 @@ pub(crate) fn sleigh(table: &TomlTable<'_>) -> Result<Sleigh, SceneError> {
     })
 }
 
-/// A start may slip sideways by so much of its velocity: what is written in decimals.
+/// Largest sideways slip of a start, relative to its velocity: the rounding of written decimals.
 const ROUNDED: f64 = 1e-9;
 
 /// Reads `[start]`: `turn_rate` is required, and `speed` or both of `x_dot` and `y_dot`; `x`, `y` and `heading` are 0 when left out.

@@ -13,14 +13,14 @@ use toml::{Spanned, Table, Value};
 
 /// A key of a scene, dotted as in sweeps, and its value: `sleigh.offset=0.3`, `effects.0.stiffness=[0.2, 0.2]`, `run.method=rk4`.
 ///
-/// The value is TOML; what is no TOML is a text. A key `parameters.NAME` is one of a scene with a table `[system]`, in which its
-/// parameters are.
+/// The value is TOML; any other text counts as a string. A key `parameters.NAME` means `system.parameters.NAME` in a scene with a table
+/// `[system]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setting {
     key: String,
-    /// In TOML.
+    /// The value in TOML.
     value: String,
-    /// As it was written.
+    /// The setting as it was written.
     written: String,
 }
 
@@ -78,7 +78,7 @@ impl Setting {
         Ok(format!("{}{}{}", &text[..span.start], self.value, &text[span.end..]))
     }
 
-    /// The same where the rest of the key is not there yet, in the table at that span or in the scene itself.
+    /// Adds the missing rest of the key to the table at this span, or to the scene itself.
     fn added(&self, text: &str, table: Option<Range<usize>>, rest: &[&str]) -> Result<String, String> {
         let dotted = |parts: &[&str]| parts.iter().map(|part| quoted(part)).collect::<Vec<_>>().join(".");
         let line = format!("{} = {}", dotted(rest), self.value);
@@ -112,7 +112,7 @@ fn quoted(part: &str) -> String {
     if bare { part.to_owned() } else { Value::String(part.to_owned()).to_string() }
 }
 
-/// The item of that number of a list.
+/// Item `number` of a list.
 fn item<'v, 'd>(list: &'v DeArray<'d>, number: &str) -> Result<&'v Spanned<DeValue<'d>>, String> {
     let found = number.parse::<usize>().ok().and_then(|number| list.get(number));
     found.ok_or_else(|| match list.len() {
@@ -211,7 +211,7 @@ impl Scene {
         Self::load_over(name_or_path, settings, &Overrides::default(), methods)
     }
 
-    /// The same with other settings of the run: only what then holds has to go together.
+    /// As [`load_with`](Self::load_with), and replaces settings of the run. Consistency is checked after the replacement.
     ///
     /// # Errors
     /// As [`load_with`](Self::load_with), and as [`with_overrides`](Self::with_overrides).
@@ -234,7 +234,7 @@ impl AnyScene {
         Self::load_over(name_or_path, settings, &Overrides::default(), methods)
     }
 
-    /// The same with other settings of the run: only what then holds has to go together.
+    /// As [`load_with`](Self::load_with), and replaces settings of the run. Consistency is checked after the replacement.
     ///
     /// # Errors
     /// As [`load_with`](Self::load_with), and as [`with_overrides`](Self::with_overrides).

@@ -43,9 +43,9 @@ const MOST: u64 = 1_000_000_000_000;
 pub struct Sweep {
     /// The scene that is varied, with the method, the step and the duration of the sweep.
     pub scene: AnyScene,
-    /// Extremes are looked for at every so many steps.
+    /// Number of steps between two looks for extremes.
     pub every: u64,
-    /// Whether the largest Lyapunov exponent of every member is wanted.
+    /// Whether the sweep computes the largest Lyapunov exponent of every member.
     pub exponent: bool,
     /// The text of the sweep's file.
     pub file: String,
@@ -53,7 +53,7 @@ pub struct Sweep {
     origin: String,
     grid: Vec<(String, Vec<f64>)>,
     random: Vec<(String, Draw)>,
-    /// The names of the methods, where these vary.
+    /// The names of the methods, if the sweep varies them.
     methods: Vec<String>,
     samples: u64,
     seed: u64,
@@ -74,7 +74,7 @@ pub enum SweepError {
         origin: String,
         /// The key.
         key: String,
-        /// What is wrong, and what is accepted.
+        /// The problem, and the accepted values.
         problem: String,
     },
 }
@@ -83,7 +83,7 @@ impl Sweep {
     /// Reads the sweep in that file; `methods` are the names that a method may have.
     ///
     /// # Errors
-    /// [`SweepError`] with the first thing that is wrong with it, or with its scene.
+    /// [`SweepError`] with the first fault of the sweep or of its scene.
     pub fn load(path: &str, methods: &[&str]) -> Result<Self, SweepError> {
         Self::parse(&file::read(path)?, path, methods)
     }

@@ -17,11 +17,11 @@ impl Scene {
         Ok(BuiltScene::of_sleigh(started))
     }
 
-    /// The same as the system of a sleigh.
+    /// The system of a sleigh, with its start.
     ///
     /// # Errors
-    /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not; or of a train, which
-    /// [`train`](Self::train) makes.
+    /// [`SleighError`] if an effect has impossible parameters, which cannot happen to a scene read from a file; or if the scene is a
+    /// train, which [`train`](Self::train) makes.
     pub fn system(&self) -> Result<Started, SleighError> {
         if self.has_trailers() {
             return Err(SleighError::Train);
@@ -41,7 +41,7 @@ impl Scene {
         Ok(Some(SleighFamily::new(self.sleigh, self.rotor()?, acting, 0.5 * self.run.duration)))
     }
 
-    /// The same of the first blade alone, where others follow it.
+    /// The system of the first blade alone, without trailers.
     pub(crate) fn first_blade(&self) -> Result<Started, SleighError> {
         systems::system(self.guiding()?, self.rotor()?, self.acting()?, &self.start)
     }
@@ -105,7 +105,7 @@ impl Scene {
         self.effects.iter().filter_map(mass).collect()
     }
 
-    /// The rate of the plane (rad/s), where it turns.
+    /// The rate of a turning plane (rad/s); `None` for a fixed plane.
     pub(crate) fn table_rate(&self) -> Option<f64> {
         self.effects.iter().find_map(|effect| match effect {
             SceneEffect::Turntable { rate } => Some(*rate),
@@ -113,7 +113,7 @@ impl Scene {
         })
     }
 
-    /// The sleigh with the velocities that are imposed on it, where any are.
+    /// The sleigh with its imposed velocities; `None` if none are imposed.
     pub(crate) fn imposed(&self) -> Result<Option<Guiding>, SleighError> {
         let sleigh = self.sleigh;
         let imposed = self.effects.iter().find_map(|effect| match effect {
@@ -149,10 +149,10 @@ impl Scene {
         })
     }
 
-    /// The motion of the scene in closed form, where no effect changes that of the free sleigh.
+    /// The motion of the scene in closed form; `None` if an effect changes the motion of the free sleigh.
     ///
     /// # Errors
-    /// [`SleighError`] where a quantity of it overflows.
+    /// [`SleighError`] if a quantity of the motion overflows.
     pub fn exact(&self) -> Result<Option<Exact>, SleighError> {
         let free = |effect: &SceneEffect| matches!(effect, SceneEffect::Flywheel { torque: None, .. });
         self.effects.iter().all(free).then(|| Exact::new(&self.sleigh, &self.start)).transpose()
@@ -160,7 +160,7 @@ impl Scene {
 }
 
 impl SceneEffect {
-    /// The effect, where it acts on the coordinates there are by a potential or a force; `None` of one that makes another body.
+    /// The effect as a potential or a force on the existing coordinates; `None` for an effect that makes another body.
     fn acting(&self) -> Result<Option<AnyEffect>, SleighError> {
         Ok(Some(match self {
             SceneEffect::Slope { gravity } => AnyEffect::Slope(Slope::new(*gravity)?),

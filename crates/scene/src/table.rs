@@ -51,7 +51,7 @@ impl<'s> TomlTable<'s> {
         self.unchecked(path, entries, span).with_known_keys(known)
     }
 
-    /// The same table under another path.
+    /// This table under another path.
     pub(crate) fn named(self, path: String) -> Self {
         Self { path, ..self }
     }
@@ -66,7 +66,7 @@ impl<'s> TomlTable<'s> {
         self.with_keys_of("a scene", known)
     }
 
-    /// The same for a file of that kind.
+    /// Refuses keys other than `known`, in a file of this kind.
     pub(crate) fn with_keys_of(self, kind: &str, known: &[&str]) -> Result<Self, SceneError> {
         let unknown = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {

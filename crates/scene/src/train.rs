@@ -28,7 +28,7 @@ impl Scene {
     /// The train of a scene with trailers, and its start: see [`systems::train`].
     ///
     /// # Errors
-    /// [`BuildError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
+    /// [`BuildError`] if a trailer or an effect has impossible parameters, which one read from a file has not.
     pub(crate) fn train(&self) -> Result<Option<(Train, StartPlace)>, BuildError> {
         let Some(spec) = self.trailers() else { return Ok(None) };
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;

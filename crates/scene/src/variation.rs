@@ -29,7 +29,7 @@ impl<T> VariedScene<'_, T> {
     }
 }
 
-/// The keys of `[grid]` with their values, and those of `[random]` with their distributions, in the order of the alphabet.
+/// The keys of `[grid]` with their values, and the keys of `[random]` with their distributions, in alphabetical order.
 type SweepVariation<'s> = (Vec<VariedScene<'s, Vec<f64>>>, Vec<VariedScene<'s, Draw>>);
 
 /// Reads both tables; a key that comes twice in them is refused.

@@ -21,7 +21,7 @@ impl Sleigh {
     /// A sleigh of mass `m` (kg), moment of inertia `I` (kg m^2) about the centre of mass and offset `a` (m).
     ///
     /// # Errors
-    /// [`SleighError`] names the parameter that is not finite, or not positive where it must be.
+    /// [`SleighError`] names the parameter that is not finite, or that must be positive and is not.
     pub fn new(mass: f64, inertia: f64, offset: f64) -> Result<Self, SleighError> {
         positive("mass", mass)?;
         positive("inertia", inertia)?;

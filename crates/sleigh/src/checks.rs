@@ -2,7 +2,7 @@
 
 use crate::SleighError;
 
-/// The numbers, where all are finite.
+/// The numbers, if all are finite.
 pub(crate) fn finite<const K: usize>(quantity: &'static str, numbers: [f64; K]) -> Result<[f64; K], SleighError> {
     match numbers.iter().find(|x| !x.is_finite()) {
         Some(value) => Err(SleighError::NotFinite { quantity, value: *value }),
@@ -10,12 +10,12 @@ pub(crate) fn finite<const K: usize>(quantity: &'static str, numbers: [f64; K]) 
     }
 }
 
-/// The number, where it is finite and positive.
+/// The number, if it is finite and positive.
 pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64, SleighError> {
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err(SleighError::NotPositive { quantity, value }) }
 }
 
-/// The number, where it is finite and not negative.
+/// The number, if it is finite and not negative.
 pub(crate) fn not_negative(quantity: &'static str, value: f64) -> Result<f64, SleighError> {
     if value.is_finite() && value >= 0.0 { Ok(value) } else { Err(SleighError::Negative { quantity, value }) }
 }

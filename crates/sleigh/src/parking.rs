@@ -64,7 +64,7 @@ pub fn sinusoidal_gait(a: f64, b: f64, frequency: f64) -> [TimeFunction; 2] {
 }
 
 impl ParkingPlan {
-    /// So many rounds in the gap at most.
+    /// Maximum number of rounds in the gap.
     const ROUNDS: f64 = 1e4;
 
     /// From the pose `start` to the pose `goal` in a gap.
@@ -107,7 +107,7 @@ impl ParkingPlan {
         Ok(Self { moves })
     }
 
-    /// The poses from `start` on, exactly: one more than moves.
+    /// The exact poses from `start` on: one more than moves.
     #[must_use]
     pub fn poses(&self, start: &SleighState) -> Vec<SleighState> {
         let mut poses = vec![SleighState { speed: 0.0, turn_rate: 0.0, ..*start }];
@@ -117,10 +117,10 @@ impl ParkingPlan {
         poses
     }
 
-    /// Speed (m/s) and turn rate (rad/s) that make the moves, a smooth pulse of so many seconds for each: for a servo.
+    /// Speed (m/s) and turn rate (rad/s) that a servo needs to make the moves: one smooth pulse of `seconds` (s) for each move.
     ///
     /// # Errors
-    /// [`SleighError`] where the seconds are not positive.
+    /// [`SleighError`] if `seconds` is not positive.
     pub fn controls(&self, seconds: f64) -> Result<[TimeFunction; 2], SleighError> {
         positive("time of a move", seconds)?;
         let times: Vec<f64> = (0..=self.moves.len()).map(|k| k as f64 * seconds).collect();
@@ -133,7 +133,7 @@ impl ParkingPlan {
         Ok([drive, turn])
     }
 
-    /// How long the controls take (s), at so many seconds a move.
+    /// Duration of the controls (s), with `seconds` (s) for each move.
     #[must_use]
     pub fn duration(&self, seconds: f64) -> f64 {
         self.moves.len() as f64 * seconds

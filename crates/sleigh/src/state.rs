@@ -1,5 +1,4 @@
-/// A state of the sleigh in the words of a scene: where the blade is, where it points, and its two admissible
-/// velocities.
+/// A state of the sleigh in the words of a scene: position and heading of the blade, and the two admissible velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SleighState {
     /// Position of the blade's contact point (m).

@@ -55,8 +55,8 @@ impl Reduced<3, 1> for Sleigh {
         })
     }
 
-    /// `u' = (e . f) / m`, `omega' = tau / J` of a force `f` at the blade and a torque `tau`; across the blade the
-    /// constraint takes what is not needed to turn the mass, `lambda = m a omega' - n . f`.
+    /// `u' = (e . f) / m`, `omega' = tau / J` of a force `f` at the blade and a torque `tau`. Across the blade the constraint takes the
+    /// force less the part that turns the mass, `lambda = m a omega' - n . f`.
     #[inline]
     fn response(&self, _t: f64, q: &[f64; 3], &[fx, fy, tau]: &[f64; 3]) -> Option<Motion<3, 1>> {
         let (sin, cos) = q[2].sin_cos();

@@ -3,7 +3,7 @@ use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, QuadraticDrag, Slop
 use sleigh::series::{OwnPush, PushInOwnAxes};
 use sleigh::{Sleigh, SleighBody};
 
-/// An effect of a scene that acts on the coordinates there are as a potential or a force: one type for a list of them.
+/// An effect of a scene that acts on the existing coordinates as a potential or a force: one type for a list of effects.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "each arm is the effect of its name")]
 pub enum AnyEffect {
@@ -18,7 +18,7 @@ pub enum AnyEffect {
     Torque(Torque),
 }
 
-/// The same text for whichever effect it is.
+/// Expands the same expression for each kind of effect.
 macro_rules! each {
     ($self:ident, $effect:ident => $result:expr) => {
         match $self {
@@ -35,7 +35,7 @@ macro_rules! each {
     };
 }
 
-/// On whichever body, an effect acts on the sleigh that it is: so that of every one there is but one to compile.
+/// An effect acts on the sleigh of a body, so that it is compiled once for all bodies.
 impl<B: SleighBody, const N: usize> Effect<B, N> for AnyEffect {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
@@ -85,13 +85,13 @@ impl Piecewise for AnyEffect {
 }
 
 impl AnyEffect {
-    /// Whether it belongs to the ground, which every blade of a train runs on.
+    /// Whether the effect belongs to the ground, on which every blade of a train runs.
     #[must_use]
     pub fn is_ground(&self) -> bool {
         matches!(self, Self::Slope(_) | Self::Bowl(_) | Self::EggCrate(_) | Self::Hills(_))
     }
 
-    /// The name of its kind, where it feeds or drains the energy; `None` for a potential.
+    /// The name of the kind of an effect that feeds or drains energy; `None` for a potential.
     #[must_use]
     pub fn powered(&self) -> Option<&'static str> {
         match self {

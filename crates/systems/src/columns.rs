@@ -41,7 +41,7 @@ const SLEIGH: [(&str, &str); 11] = [
     ("center_y", "m"),
 ];
 
-/// And those of a rotor.
+/// The columns of a rotor.
 const ROTOR: [(&str, &str); 2] = [("rotor_angle", "rad"), ("rotor_rate", "rad/s")];
 
 /// The columns of a sleigh: what a scene does not have has no column.
@@ -76,7 +76,7 @@ pub(crate) fn row_of_sleigh(piece: &dyn SceneSystem, node: &Node) -> Vec<f64> {
     row
 }
 
-/// The columns of a train: those of its first blade, the headings of the others, and the rotor, where there is one.
+/// The columns of a train: its first blade, the headings of the others, and the rotor, if there is one.
 pub(crate) fn of_train(train: &Train) -> Vec<Column> {
     let own = SLEIGH[..7].iter().copied().chain([("work", "J"), ("constraint", "m/s"), ("hinges", "m")]);
     let others = (1..=train.trailers().len()).map(|k| Column::new(format!("heading_{k}"), "rad"));

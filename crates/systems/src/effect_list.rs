@@ -6,8 +6,7 @@ use sleigh::{Sleigh, SleighBody};
 
 /// The effects of a scene.
 ///
-/// On whichever body, they act on the sleigh that it is: so that of every question there is but one function to compile for all bodies,
-/// in vector registers too.
+/// The effects act on the sleigh of a body, so that each function is compiled once for all bodies, in vector registers too.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EffectList(Vec<AnyEffect>);
 
@@ -48,8 +47,8 @@ impl EffectList {
         )
     }
 
-    /// In registers: called, but of the sleigh alone, whose kernel is the one that is used most. A call is given the sine and cosine of
-    /// the heading, which who calls needs too.
+    /// In registers, the force is a call, except for a body that is a sleigh alone, whose kernel is used most. A call is given the sine and
+    /// cosine of the heading, which its caller needs too.
     #[inline(always)]
     fn whole_force_on<B: SleighBody, S: Scalar, const N: usize>(
         &self,
@@ -80,7 +79,7 @@ impl EffectList {
         )
     }
 
-    /// The whole force at a heading whose sine and cosine are known.
+    /// The whole force for known sine and cosine of the heading.
     #[allow(clippy::manual_map, reason = "a closure may stay a call, in which the registers are not known")]
     #[inline(always)]
     fn pointed<S: Scalar, const N: usize>(

@@ -6,27 +6,27 @@ use lagrangian::{
 use sleigh::effects::MovingMass;
 use sleigh::{Sleigh, TimeFunction};
 
-/// The parameters of a [`SleighFamily`], in their order, as scenes call them.
+/// The parameters of a [`SleighFamily`] in their order, with their names in scenes.
 pub const PARAMETERS: [&str; 3] = ["sleigh.mass", "sleigh.inertia", "sleigh.offset"];
 
-/// Numbers carry so many directions.
+/// Number of directions that a number carries.
 const ROOM: usize = 8;
 
 /// A sleigh on which no velocity is imposed, with its effects, as a function of [`PARAMETERS`]: three coordinates, or four with a rotor, and
 /// one constraint. [`SceneSystem::member`](crate::SceneSystem::member) asks for no other shape.
 #[derive(Debug, Clone)]
 pub struct SleighFamily {
-    /// With its own mass and offset.
+    /// The sleigh with its own mass and offset.
     sleigh: Sleigh,
     /// Inertia (kg m^2) and torque of the motor.
     rotor: Option<(f64, Option<TimeFunction>)>,
     effects: Vec<AnyEffect>,
-    /// The masses that are moved in it.
+    /// The masses that move in the sleigh.
     masses: Vec<MovingMass>,
 }
 
 impl SleighFamily {
-    /// The family of a sleigh that carries masses, with the smooth piece of what acts on it that holds at the time `t` (s).
+    /// The family of a sleigh that carries masses, under the smooth piece of its effects at the time `t` (s).
     #[must_use]
     pub fn new(sleigh: Sleigh, rotor: Option<Rotor>, (effects, masses): (&[AnyEffect], &[MovingMass]), t: f64) -> Self {
         let rotor = rotor.map(|rotor| (rotor.inertia, rotor.torque.map(|torque| torque.piece(t))));
@@ -35,12 +35,12 @@ impl SleighFamily {
         Self { sleigh, rotor, effects, masses }
     }
 
-    /// How many coordinates it has.
+    /// Number of coordinates.
     pub(crate) fn coordinates(&self) -> usize {
         if self.rotor.is_some() { 4 } else { 3 }
     }
 
-    /// The values of the parameters, zeros after them.
+    /// The values of the parameters, followed by zeros.
     pub(crate) fn values(&self) -> [f64; ROOM] {
         let own = [self.sleigh.mass(), self.sleigh.inertia(), self.sleigh.offset()];
         std::array::from_fn(|k| own.get(k).copied().unwrap_or(0.0))
@@ -78,7 +78,7 @@ impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, ROOM> for Sleig
 }
 
 impl<const N: usize, const M: usize> Parametrised<N, M, ROOM> for SleighFamily {
-    /// That of the sleigh, its rotor and its effects.
+    /// The Lagrangian of the sleigh, its rotor and its effects (J).
     fn lagrangian<S: Scalar>(&self, p: &[S; ROOM], t: S, q: &[S; N], v: &[S; N]) -> S {
         let (sin, cos) = q[2].sin_cos();
         let &[mass, inertia, offset, ..] = p;

@@ -10,15 +10,15 @@ use sleigh::{Flywheel, Guided, Sleigh, SleighBody, Taylor};
 /// The power of one effect at one node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectPower {
-    /// The effect's kind, numbered from the second of one kind on.
+    /// The effect's kind, numbered from the second effect of the same kind on.
     pub name: String,
-    /// The power that it feeds into the energy (W).
+    /// The power that the effect feeds into the energy (W).
     pub power: f64,
 }
 
-/// The list of effects of a scene, none or some.
+/// The effects of a scene, perhaps none.
 pub(crate) trait SceneEffects<B, const N: usize>: Effect<B, N> + PushInOwnAxes<B> {
-    /// The power of each effect that has any.
+    /// The power of each effect that has power.
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower>;
 }
 
@@ -28,7 +28,7 @@ impl<B, const N: usize> SceneEffects<B, N> for () {
     }
 }
 
-/// One effect alone, without a body: what it adds to a Lagrangian and to the forces.
+/// One effect alone, without a body, as a system: its parts of a Lagrangian and of the forces.
 struct EffectAlone<'a, B, E> {
     body: &'a B,
     effect: &'a E,
@@ -65,17 +65,17 @@ fn power_of<B, E: Effect<B, N>, const N: usize>(body: &B, effect: &E, t: f64, q:
     force_power(&alone, t, q, v).unwrap_or(0.0) + lagrangian_power(&alone, t, q, v)
 }
 
-/// The name of the effect with that number, from one, among those of its kind.
+/// The name of effect `number`, counted from 1 among the effects of its kind.
 fn numbered(kind: &str, number: usize) -> String {
     if number == 1 { kind.to_owned() } else { format!("{kind}_{number}") }
 }
 
 /// A body of a scene: a sleigh, perhaps with a rotor, perhaps guided.
 pub(crate) trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
-    /// The power of what drives the body's own coordinates and constraints; `lambda` are the multipliers there.
+    /// The power of everything that drives the body's own coordinates and constraints, which have the multipliers `lambda`.
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
 
-    /// The series of the body under this force, with this tolerance; none where it has none.
+    /// The series method of the body under this push, with this tolerance; `None` if the body has no such series.
     fn series(&self, _push: OwnPush, _tolerance: f64) -> Option<Stepper<'static, N, M>> {
         None
     }
@@ -95,8 +95,8 @@ impl<const K: usize, const M: usize> SceneBody<3, M> for Guided<K>
 where
     Self: System<3, M>,
 {
-    /// Of masses that are moved what their Lagrangians tell.
-    /// A constraint `A v + b = 0` with the multiplier `lambda` has the power `-lambda . b`.
+    /// The power of moving masses follows from their Lagrangians. A constraint `A v + b = 0` with the multiplier `lambda` has the power
+    /// `-lambda . b`.
     fn powers(&self, t: f64, q: &[f64; 3], v: &[f64; 3], lambda: &[f64; M]) -> Vec<EffectPower> {
         let (_, b) = self.constraint(t, q);
         let power = |rows: std::ops::Range<usize>| -rows.map(|k| lambda[k] * b[k]).sum::<f64>();

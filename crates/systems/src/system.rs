@@ -8,14 +8,14 @@ use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, Time
 
 /// A system that answers in the words of a scene.
 ///
-/// Configurations, velocities and multipliers are lists as long as its mechanism has coordinates and constraints; what a list lacks counts
-/// as not a number.
+/// Configurations, velocities and multipliers are lists as long as its mechanism has coordinates and constraints; missing numbers count
+/// as NaN.
 pub trait SceneSystem: Send + Sync {
-    /// The system for runs, with its own integrators: a closed form where it is a sleigh, free or with forces, or has a rotor on a free
-    /// bearing, and a series where it is a sleigh that is free, in a round well, or under a constant thrust or torque.
+    /// The system for runs, with its own integrators: a closed form for a sleigh, free or with forces, or with a rotor on a free bearing; a
+    /// series for a sleigh that is free, in a round well, or under a constant thrust or torque.
     fn mechanism(&self) -> Box<dyn Mechanism + '_>;
 
-    /// The same as the member of a family; none where the family has another number of coordinates, or velocities are imposed.
+    /// The system as a member of a family; `None` if the family has another number of coordinates, or velocities are imposed.
     fn member<'a>(&'a self, family: &'a SleighFamily) -> Option<Box<dyn ParametrisedMechanism + 'a>>;
 
     /// Place, heading and admissible velocities of the sleigh.
@@ -24,10 +24,10 @@ pub trait SceneSystem: Send + Sync {
     /// The centre of mass (m).
     fn centre(&self, q: &[f64]) -> [f64; 2];
 
-    /// Angle relative to the body (rad) and relative rate (rad/s) of the rotor, where there is one.
+    /// Angle (rad) and rate (rad/s) of the rotor relative to the body, if there is a rotor.
     fn rotor(&self, q: &[f64], v: &[f64]) -> Option<[f64; 2]>;
 
-    /// The power of each effect that has any, where the constraints have the multipliers `lambda`.
+    /// The power of each effect that has power, if the constraints have the multipliers `lambda`.
     fn powers(&self, t: f64, q: &[f64], v: &[f64], lambda: &[f64]) -> Vec<EffectPower>;
 
     /// The smooth piece that holds at the time `t` (s), continued to all times.
@@ -46,12 +46,12 @@ pub trait SceneSystem: Send + Sync {
         columns::row_of_sleigh(&*self.scene_piece(node.t), node)
     }
 
-    /// The train that it is, where blades follow the sleigh.
+    /// The train, if blades follow the sleigh.
     fn train(&self) -> Option<&Train> {
         None
     }
 
-    /// Whether velocities are imposed: the blade is not the only constraint.
+    /// Whether velocities are imposed, so that the blade is not the only constraint.
     fn imposes_velocities(&self) -> bool {
         self.mechanism().size().m > 1
     }
@@ -147,16 +147,16 @@ impl std::fmt::Debug for Started {
     }
 }
 
-/// A sleigh with what imposes velocities on it.
+/// A sleigh, with the velocities imposed on it.
 #[derive(Debug, Clone)]
 pub enum Guiding {
-    /// Nothing does, and it carries nothing.
+    /// No velocity is imposed, and the sleigh carries nothing.
     None(Sleigh),
     /// No velocity is imposed; its plane turns, or it carries masses that are moved.
     Zero(Guided<0>),
     /// One velocity is imposed.
     One(Guided<1>),
-    /// Two are.
+    /// Two velocities are imposed.
     Two(Guided<2>),
 }
 
@@ -171,13 +171,13 @@ pub struct Rotor {
     pub torque: Option<TimeFunction>,
 }
 
-/// The system of a body, a rotor and effects, and its start: the one place where a type is chosen.
+/// The system of a body, a rotor and effects, with its start. This function alone chooses the type.
 ///
-/// A sleigh on which nothing acts, with a rotor or without, is a type of its own, since its steps are shorter than a look at an empty
-/// list; any other body has a list of what acts on it. A velocity that is imposed replaces that of the start.
+/// A sleigh without effects, with a rotor or without, has a type of its own, since its steps are shorter than a look at an empty list. Any
+/// other body has a list of effects. Imposed velocities replace the velocities of `start`.
 ///
 /// # Errors
-/// [`SleighError`] where the rotor has impossible parameters.
+/// [`SleighError`] if the rotor has impossible parameters.
 pub fn system(
     body: Guiding,
     rotor: Option<Rotor>,

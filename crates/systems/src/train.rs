@@ -35,7 +35,7 @@ pub fn train(
     }
 }
 
-/// In the words of its first blade.
+/// A train in the words of its first blade.
 impl SceneSystem for Train {
     fn mechanism(&self) -> Box<dyn Mechanism + '_> {
         Box::new(AssemblySubject::from(&self.assembly))
@@ -49,7 +49,7 @@ impl SceneSystem for Train {
         self.blade(q, v, 0)
     }
 
-    /// Of a train it is not known.
+    /// The centre of mass of a train is not known.
     fn centre(&self, _q: &[f64]) -> [f64; 2] {
         [f64::NAN; 2]
     }

@@ -3,30 +3,30 @@ use crate::{FREE, Family, TextModel, TextStart, TextSystem};
 use dla::{Mechanism, Member, ParametrisedMechanism, Subject};
 use std::sync::Arc;
 
-/// A system of text has at most so many coordinates.
+/// Maximum number of coordinates of a system of text.
 pub const MOST_COORDINATES: usize = 12;
-/// And at most so many constraints.
+/// Maximum number of constraints of a system of text.
 pub const MOST_CONSTRAINTS: usize = 6;
 
 /// A system of text as an object.
 ///
-/// Its own coordinates and constraints are those of its model. Its mechanism has perhaps more, behind them, that fill up a shape: they
+/// The mechanism has the coordinates and constraints of the model, and perhaps more behind them that pad the system to a shape: these
 /// begin at rest at zero, and stay there.
 pub trait TextMechanics: Send + Sync {
-    /// What the texts mean.
+    /// The model that the texts describe.
     fn model(&self) -> &TextModel;
 
     /// The system for runs.
     fn mechanism(&self) -> Box<dyn Mechanism + '_>;
 
-    /// The same as the member of the family that it was started from ([`Family::started`]); none of any other system.
+    /// The system as a member of the family that started it ([`Family::started`]); `None` for any other system.
     fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>>;
 }
 
-/// A system of a shape.
+/// A system of text in one shape.
 struct Shaped<const N: usize, const M: usize> {
     system: TextSystem<N, M>,
-    /// With the values of the parameters.
+    /// The family, with the values of its parameters.
     family: Option<(FamilySystem<N, M>, [f64; FREE])>,
 }
 
@@ -45,23 +45,23 @@ impl<const N: usize, const M: usize> TextMechanics for Shaped<N, M> {
     }
 }
 
-/// The system of a model, with a basis for the neighbourhood of its start where the text gives none; `None` where it is too large, which
-/// those within the limits are not.
+/// The system of a model. If the text gives no basis, the system has one for the neighbourhood of its start. Returns `None` if the model
+/// exceeds [`MOST_COORDINATES`] or [`MOST_CONSTRAINTS`].
 #[must_use]
 pub fn started(model: &Arc<TextModel>, start: &TextStart) -> Option<Box<dyn TextMechanics>> {
     in_shape(model, start, None)
 }
 
 impl Family {
-    /// The same of the member of a family.
+    /// The system of a member of the family, as [`started`].
     #[must_use]
     pub fn started(&self, start: &TextStart) -> Option<Box<dyn TextMechanics>> {
         in_shape(&self.member, start, Some(self))
     }
 }
 
-/// The shapes that systems of text have, each compiled once: the first that has room for a system is its own. In the last there is room
-/// for any number of constraints up to six, on twelve coordinates.
+/// The system in the first shape that has room for it; each shape is compiled once. The last shape has room for twelve coordinates with any
+/// number of constraints up to six.
 fn in_shape(model: &Arc<TextModel>, start: &TextStart, family: Option<&Family>) -> Option<Box<dyn TextMechanics>> {
     let shapes = [shaped::<3, 1>, shaped::<4, 2>, shaped::<6, 3>, shaped::<8, 4>, shaped::<12, 6>, shaped::<18, 6>];
     shapes.into_iter().find_map(|shaped| shaped(model, start, family))

@@ -6,28 +6,27 @@ use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, S
 use std::array::from_fn;
 use std::sync::Arc;
 
-/// So many parameters at most are left free at once: as many as a number carries directions.
+/// Maximum number of free parameters: as many as a number carries directions.
 pub const FREE: usize = 8;
 
 /// The system of some texts as a function of a few of its parameters.
 ///
-/// The texts are derived once more, with these parameters as variables: what is constant in the system is not constant here.
+/// The texts are derived once more with these parameters as variables, so their values are not folded into the formulas.
 #[derive(Debug, Clone)]
 pub struct Family {
-    /// With a value for each parameter.
+    /// The system with a value for each parameter.
     pub(crate) member: Arc<TextModel>,
-    /// With the parameters as variables.
+    /// The system with the parameters as variables.
     pub(crate) free: Arc<TextModel>,
-    /// Their values.
+    /// The values of the parameters.
     pub(crate) values: [f64; FREE],
 }
 
 impl Family {
-    /// The family of a system whose texts are `words`, in the parameters of these names, no more than [`FREE`]; `member` is the system
-    /// itself.
+    /// The family of the system of `words` in the parameters with these names, at most [`FREE`]. `member` is the system itself.
     ///
     /// # Errors
-    /// [`TextError`] where the texts make no system.
+    /// [`TextError`] if the texts make no system.
     pub fn new(words: &Words, member: &Arc<TextModel>, parameters: &[String]) -> Result<Self, TextError> {
         let names = parameters.get(..FREE).unwrap_or(parameters);
         let value = |name: &String| words.parameters.iter().find(|(other, _)| other == name).cloned();
@@ -43,14 +42,14 @@ impl Family {
         Ok(Self { member: Arc::clone(member), free: Arc::new(model), values })
     }
 
-    /// The values of the parameters, zeros after them.
+    /// The values of the parameters, followed by zeros.
     #[must_use]
     pub fn values(&self) -> &[f64; FREE] {
         &self.values
     }
 
-    /// The family as systems of that shape, with a basis for the neighbourhood of a configuration where the text gives none; `None`
-    /// where the shape has no room for it.
+    /// The family as systems of this shape. If the text gives no basis, they have one for the neighbourhood of `q` at the time `t` (s).
+    /// Returns `None` if the shape has no room for the system.
     #[must_use]
     pub fn shaped<const N: usize, const M: usize>(&self, t: f64, q: &[f64]) -> Option<FamilySystem<N, M>> {
         let member = TextSystem::new(Arc::clone(&self.member), t, q)?;

@@ -9,24 +9,24 @@ use nalgebra::DMatrix;
 /// The rank of the constraints at a place, and how the directions that they admit grow by Lie brackets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// How many constraints are independent.
+    /// Number of independent constraints.
     pub rank: usize,
-    /// The growth vector `r_1 <= r_2 <= ..` of the admissible directions at a fixed time: the rank of all brackets of up to so many
-    /// fields. It ends with the first that is all of space, with one that does not grow, or where longer brackets are too large.
+    /// The growth vector `r_1 <= r_2 <= ..` of the admissible directions at a fixed time: `r_k` is the rank of all brackets of up to `k`
+    /// fields. It ends with the first rank that is the number of coordinates or does not grow, or before brackets that are too large.
     pub growth: Vec<usize>,
-    /// How many coordinates there are.
+    /// Number of coordinates.
     pub coordinates: usize,
 }
 
-/// Brackets of so many fields are taken at most.
+/// Maximum number of fields in a bracket.
 const DEPTH: usize = 4;
-/// A singular value below this, relative to the largest, is none: exact derivatives leave rounding.
+/// Singular values below this fraction of the largest count as zero: exact derivatives leave rounding.
 const TOLERANCE: f64 = 1e-10;
-/// No more brackets are taken than so many.
+/// Maximum number of brackets.
 const MOST: usize = 400;
 
 impl Geometry {
-    /// Whether the constraints are those of positions, in words.
+    /// Whether the constraints can be integrated to constraints on positions, in words.
     #[must_use]
     pub fn integrability(&self) -> String {
         match (self.growth.first(), self.growth.get(1)) {
@@ -109,7 +109,7 @@ impl Fields<'_> {
             .collect()
     }
 
-    /// The values of fields, one a column; none where they are too large or not finite.
+    /// The values of fields, one in each column; `None` if they are too large or not finite.
     fn values(&self, fields: &[Field]) -> Option<DMatrix<f64>> {
         self.graph.check().ok()?;
         let tape = Tape::new(&self.graph, &fields.concat()).ok()?;

@@ -18,7 +18,7 @@ pub struct Coordinate {
 
 /// A system that was made of texts: its formulas, checked and derived.
 ///
-/// Of `n` coordinates and `m` constraints; the last of these are those on positions, which are constraints on velocities by their rates.
+/// With `n` coordinates and `m` constraints. The last constraints are the rates of constraints on positions.
 #[derive(Debug, Clone)]
 pub struct TextModel {
     pub(crate) coordinates: Vec<Coordinate>,
@@ -30,19 +30,19 @@ pub struct TextModel {
     /// `A` by rows, then `b`.
     pub(crate) constraint: Tapes,
     pub(crate) holonomic: Tapes,
-    /// None where no force acts.
+    /// The force; `None` if no force acts.
     pub(crate) force: Option<Tapes>,
-    /// A basis of the admissible velocities that holds everywhere, given or seen; none where one holds near a configuration only.
+    /// A basis of the admissible velocities that holds everywhere, given or found; `None` if a basis holds near a configuration only.
     pub(crate) basis: Option<Tapes>,
     pub(crate) mass: Tapes,
     pub(crate) outputs: Vec<String>,
     pub(crate) told: Tapes,
     pub(crate) timed: bool,
     pub(crate) formulas: Arc<Formulas>,
-    /// How a basis that holds everywhere is derived; none where the text gives one, or none is seen.
+    /// How a basis that holds everywhere is derived; `None` if the text gives one, or none is found.
     pub(crate) eliminations: Option<Vec<RowElimination>>,
     pub(crate) equations: EquationsOfBases,
-    /// The same between corners in time; none where there are no such corners.
+    /// The model between corners in time; `None` if there are no such corners.
     pub(crate) pieces: Option<TextPieces>,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct TextPieces {
     pub(crate) model: Arc<TextModel>,
 }
 
-/// The same formulas make the same model.
+/// Models with the same formulas are equal.
 impl PartialEq for TextModel {
     fn eq(&self, other: &Self) -> bool {
         let parts = |of: &Self| (of.coordinates.clone(), of.velocities, of.positions, of.outputs.clone(), of.timed);
@@ -129,13 +129,13 @@ impl TextModel {
         })
     }
 
-    /// The same with steps that go across its corners in time, for what takes derivatives of steps of one length.
+    /// The model with steps across its corners in time, for derivatives of steps of one length.
     #[must_use]
     pub fn uncut(&self) -> Self {
         Self { pieces: None, ..self.clone() }
     }
 
-    /// The times between two (s) at which a formula has a corner in time, or jumps; none where they are more than can be told.
+    /// The times in an interval (s) at which a formula has a corner in time, or jumps; `None` if there are too many to find.
     #[must_use]
     pub fn jumps(&self, from: f64, to: f64) -> Option<Vec<f64>> {
         self.pieces.as_ref().map_or(Some(Vec::new()), |pieces| pieces.corners.between(from, to))

@@ -18,21 +18,21 @@ struct ReducedTapes {
     stands_alone: bool,
 }
 
-/// The equations in one basis: nothing before they are asked for, and none where they are too large.
+/// The equations in one basis: derived when they are first needed, and `None` if they are too large.
 #[derive(Debug, Default)]
 pub(crate) struct EquationsOfBasis {
     velocity: OnceLock<Option<Tapes>>,
     reduced: OnceLock<Option<ReducedTapes>>,
 }
 
-/// They are shared by all systems of a model with the same basis.
+/// The equations in one basis, shared by all systems of a model with the same basis.
 pub(crate) type SharedEquations = Arc<EquationsOfBasis>;
 
-/// The equations in each basis that has been in use, by its number; zero is that of a basis that holds everywhere.
+/// The equations in each basis used so far, by the number of the basis; zero is the number of a basis that holds everywhere.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct EquationsOfBases {
     all: Arc<Mutex<BTreeMap<u64, SharedEquations>>>,
-    /// How long their derivation has taken so far (ns).
+    /// Time of their derivation so far (ns).
     taken: Arc<AtomicU64>,
 }
 
@@ -45,14 +45,14 @@ impl EquationsOfBases {
 }
 
 impl TextModel {
-    /// How long the equations in the bases that were in use have taken to derive so far (s): they are derived when they are first asked for,
-    /// which is within the first step.
+    /// Time taken so far to derive the equations in the bases used (s). Equations are derived when they are first needed, which is
+    /// within the first step.
     #[must_use]
     pub fn derivation_seconds(&self) -> f64 {
         self.equations.taken.load(Ordering::Relaxed) as f64 * 1e-9
     }
 
-    /// What `derive` gives, its time counted.
+    /// Runs `derive` and adds its time to the total.
     fn clocked<T>(&self, derive: impl FnOnce() -> T) -> T {
         let begin = Instant::now();
         let derived = derive();
@@ -60,12 +60,12 @@ impl TextModel {
         derived
     }
 
-    /// The number of the basis in use: zero where one holds everywhere.
+    /// The number of the basis in use; zero if the model has a basis that holds everywhere.
     pub(crate) fn basis_number(&self, pivots: &Pivots) -> u64 {
         if self.basis.is_some() { 0 } else { pivots.number() }
     }
 
-    /// The velocity `W xi + v_b` in the basis in use; none where it is too large.
+    /// The velocity `W xi + v_b` in the basis in use; `None` if its formulas are too large.
     fn velocity(&self, pivots: &Pivots) -> Option<Tapes> {
         let (mut formulas, basis) = self.formulas_in_basis(pivots);
         let velocity = formulas.velocity_in(&basis)?;
@@ -79,7 +79,7 @@ impl TextModel {
         Some(ReducedTapes { acceleration, reconstruction, stands_alone })
     }
 
-    /// The reduced equations in the basis in use; none where they are too large.
+    /// The reduced equations in the basis in use; `None` if they are too large.
     pub(crate) fn reduced_formulas(&self, pivots: &Pivots) -> Option<(Formulas, ReducedFormulas)> {
         let (mut formulas, basis) = self.formulas_in_basis(pivots);
         let reduced = formulas.reduced_in(basis)?;

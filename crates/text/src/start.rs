@@ -68,23 +68,22 @@ pub enum StartError {
     },
 }
 
-/// Residuals of so much, beside the sizes of their terms, are rounding.
+/// Residuals below this fraction of the sizes of their terms are rounding.
 const ROUNDING: f64 = 1e-13;
-/// Directions in which the constraints are so much weaker than in others do not count.
+/// Directions in which the constraints are weaker than this fraction of the strongest direction do not count.
 const WEAK: f64 = 1e-10;
-/// A given number that changes by so much, relatively, was moved.
+/// A given number counts as moved if it changes by more than this fraction.
 const NOTED: f64 = 1e-9;
 
 impl TextModel {
-    /// The admissible state that is nearest to a given one at time zero, in the kinetic metric; `None` stands for numbers that are left
-    /// out.
+    /// The admissible state nearest to a given one at time zero, in the kinetic metric. `None` stands for a number that is left out.
     ///
-    /// Rates that are left out are the smallest that together with those given meet the constraints, each measured by its own inertia;
-    /// where that cannot be, all of them move, and [`TextStart::moved`] tells. Coordinates that are left out are zero, unless
-    /// constraints on positions ask for others; so do they move before those that are given.
+    /// Rates that are left out get the smallest values that meet the constraints together with the given rates, each measured by its own
+    /// inertia. If there are none, all rates move, and [`TextStart::moved`] names them. Coordinates that are left out are zero, unless
+    /// constraints on positions need other values; given coordinates move only if these cannot meet the constraints alone.
     ///
     /// # Errors
-    /// [`StartError`] where there is no such state nearby, a function of the system is not a number there, or a given basis is not one.
+    /// [`StartError`] if there is no such state nearby, a function of the system is not finite there, or a given basis is not admissible.
     pub fn start(&self, q: &[Option<f64>], v: &[Option<f64>]) -> Result<TextStart, StartError> {
         let n = self.coordinates.len();
         let given = |x: &[Option<f64>]| -> Vec<Option<f64>> { (0..n).map(|i| x.get(i).copied().flatten()).collect() };
@@ -140,8 +139,8 @@ impl TextModel {
         Ok(TextStart { q: place.as_slice().to_vec(), v: rate.as_slice().to_vec(), moved, left_out })
     }
 
-    /// The rates of an admissible state with that of the coordinate `i` changed to a value, the others as near to what they were as the
-    /// constraints admit, in the kinetic metric at time zero; none where they do not admit it.
+    /// The rates of an admissible state with the rate of coordinate `i` set to `value`. The other rates change as little as the constraints
+    /// admit, in the kinetic metric at time zero. Returns `None` if the constraints do not admit the value.
     #[must_use]
     pub fn with_rate(&self, q: &[f64], v: &[f64], i: usize, value: f64) -> Option<Vec<f64>> {
         let mut rate = DVector::from_column_slice(v);
@@ -154,7 +153,7 @@ impl TextModel {
         missed(&a, &b, &rate).is_none().then(|| rate.as_slice().to_vec())
     }
 
-    /// Moves some coordinates until the constraints on positions are met; whether they are.
+    /// Moves some coordinates until the constraints on positions are met. Returns whether they are.
     fn onto_positions(&self, q: &mut DVector<f64>, moving: &[usize]) -> bool {
         const TRIES: usize = 50;
         if self.positions == 0 {
@@ -220,12 +219,12 @@ fn select(a: &DMatrix<f64>, columns: &[usize]) -> DMatrix<f64> {
     a.select_columns(columns)
 }
 
-/// The kinetic metric of some coordinates; that of unit masses where the mass matrix is none.
+/// The part of the mass matrix for some coordinates.
 fn metric(mass: &DMatrix<f64>, of: &[usize]) -> DMatrix<f64> {
     mass.select_columns(of).select_rows(of)
 }
 
-/// Adds to some rates what meets the constraints, `A v + b = 0`, as nearly as they can.
+/// Changes the `moving` rates so that the constraints `A v + b = 0` are met, or missed as little as possible.
 fn move_onto(a: &DMatrix<f64>, b: &DVector<f64>, mass: &DMatrix<f64>, v: &mut DVector<f64>, moving: &[usize]) {
     let residual = -(a * &*v + b);
     if let Some(change) = least(&select(a, moving), &metric(mass, moving), &residual) {
@@ -235,7 +234,7 @@ fn move_onto(a: &DMatrix<f64>, b: &DVector<f64>, mass: &DMatrix<f64>, v: &mut DV
     }
 }
 
-/// The largest residual of the constraints, where one is more than rounding.
+/// The largest residual of the constraints; `None` if all residuals are rounding.
 fn missed(a: &DMatrix<f64>, b: &DVector<f64>, v: &DVector<f64>) -> Option<f64> {
     let residuals = a * v + b;
     // Beside the largest terms that the row might have: a rate that is to vanish leaves terms of rounding only.
@@ -244,7 +243,8 @@ fn missed(a: &DMatrix<f64>, b: &DVector<f64>, v: &DVector<f64>) -> Option<f64> {
     (!all_meet).then(|| residuals.amax())
 }
 
-/// The shortest solution `u` of `A u = r` in a metric, that of least squares where there is none.
+/// The shortest solution `u` of `A u = r` in the metric `mass`, by least squares if there is no solution. If `mass` is not positive
+/// definite, lengths are Euclidean.
 pub(crate) fn least(a: &DMatrix<f64>, mass: &DMatrix<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
     if a.ncols() == 0 || a.nrows() == 0 {
         return Some(DVector::zeros(a.ncols()));

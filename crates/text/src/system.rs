@@ -7,20 +7,20 @@ use std::sync::Arc;
 
 /// A system of text, of `N` coordinates and `M` constraints.
 ///
-/// Where the text has fewer, the others are filled up: each further coordinate is that of a unit mass that rests at zero, and each further
-/// constraint holds one of them. Both are exact, and take no part in the motion: all terms in which they stand are zeros.
+/// A smaller text is padded to this shape: each further coordinate belongs to a unit mass that rests at zero, and each further constraint
+/// holds one such coordinate. The padding is exact and does not influence the motion, since all its terms are zero.
 #[derive(Debug, Clone)]
 pub struct TextSystem<const N: usize, const M: usize> {
     pub(crate) model: Arc<TextModel>,
-    /// The sizes of rates with the same kinetic energy.
+    /// The rates that have the same kinetic energy.
     sizes: Arc<[f64]>,
     pub(crate) pivots: Pivots,
     pub(crate) equations: SharedEquations,
-    /// The sides of the corners in time, of a piece.
+    /// The sides of the corners in time on this smooth piece.
     pub(crate) sides: Arc<[f64]>,
 }
 
-/// The reduced equations follow from the rest.
+/// Compares all fields but the reduced equations, which follow from the others.
 impl<const N: usize, const M: usize> PartialEq for TextSystem<N, M> {
     fn eq(&self, other: &Self) -> bool {
         (&self.model, &self.sizes, self.pivots, &self.sides) == (&other.model, &other.sizes, other.pivots, &other.sides)
@@ -28,14 +28,14 @@ impl<const N: usize, const M: usize> PartialEq for TextSystem<N, M> {
 }
 
 impl<const N: usize, const M: usize> TextSystem<N, M> {
-    /// Whether a system of so many coordinates and constraints has room here: further constraints need coordinates to hold.
+    /// Whether the shape has room for this number of coordinates and constraints. Each padding constraint needs a padding coordinate.
     #[must_use]
     pub const fn has_room(coordinates: usize, constraints: usize) -> bool {
         coordinates <= N && constraints <= M && coordinates - constraints <= N - M
     }
 
-    /// The system, with a basis for the neighbourhood of a configuration, at a time (s), where the text gives none; `None` where the
-    /// shape has no room for it.
+    /// The system in this shape. If the text gives no basis, the system has one for the neighbourhood of `q` at the time `t` (s).
+    /// Returns `None` if the shape has no room for the model.
     #[must_use]
     pub fn new(model: Arc<TextModel>, t: f64, q: &[f64]) -> Option<Self> {
         let (n, m) = (model.coordinates().len(), model.constraints());
@@ -55,7 +55,7 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         Self { model, sizes, pivots, equations, sides }
     }
 
-    /// What the texts mean.
+    /// The model that the texts describe.
     #[must_use]
     pub fn model(&self) -> &Arc<TextModel> {
         &self.model
@@ -69,13 +69,13 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         self.model.constraints()
     }
 
-    /// The same with another basis, of that number, for the neighbourhood of a configuration; zero is the one it has.
+    /// The same system with the basis of this number; zero keeps its basis.
     pub(crate) fn rebased(&self, basis: u64) -> Self {
         let pivots = if basis == 0 { self.pivots } else { Pivots::numbered(basis, self.m()) };
         self.with(&self.model, pivots)
     }
 
-    /// The same with another model, of the same coordinates and constraints.
+    /// The same system with another model, which must have the same coordinates and constraints.
     pub(crate) fn of_model(&self, model: &Arc<TextModel>) -> Self {
         self.with(model, self.pivots)
     }
@@ -86,7 +86,7 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
     }
 }
 
-/// What a system is made of, at the values `p` of the parameters that its model leaves free.
+/// The functions of the system at the values `p` of the parameters that its model leaves free.
 impl<const N: usize, const M: usize> TextSystem<N, M> {
     pub(crate) fn lagrangian_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N], v: &[S; N]) -> S {
         let n = self.n();

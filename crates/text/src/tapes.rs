@@ -3,8 +3,8 @@ use lagrangian::Scalar;
 
 /// Some formulas of time, coordinates and rates, the constants among them told apart from those that are computed.
 ///
-/// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` the parameter `k` of
-/// those that are left free, or the side `k` of a piece.
+/// With `n` coordinates, variable 0 is time, `1 + i` coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` free parameter `k`, or the
+/// side `k` of a piece.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tapes {
     tape: Tape,
@@ -19,11 +19,11 @@ pub(crate) struct Tapes {
 pub(crate) struct TapePoint<'a, S> {
     pub(crate) t: S,
     pub(crate) q: &'a [S],
-    /// None for formulas in which no rates stand.
+    /// The rates; empty for formulas without rates.
     pub(crate) v: &'a [S],
-    /// The parameters that are left free: none of a system that has a value for each.
+    /// The free parameters; empty if the system has a value for each parameter.
     pub(crate) p: &'a [S],
-    /// The sides of the corners in time: none of a system that is no piece.
+    /// The sides of the corners in time; empty for a system that is no piece.
     pub(crate) sides: &'a [f64],
 }
 
@@ -62,7 +62,7 @@ impl Tapes {
         self.tell(n, at, &mut result);
     }
 
-    /// The same, compiled once for all that have such numbers.
+    /// Evaluates as a call, compiled once for each type of numbers.
     #[inline(never)]
     fn tell<S: Scalar>(&self, n: usize, at: TapePoint<'_, S>, result: &mut dyn FnMut(usize, S)) {
         for &(k, x) in &self.constants {

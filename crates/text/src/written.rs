@@ -9,9 +9,9 @@ use nalgebra::{DMatrix, DVector};
 /// The equations of motion in a basis of the admissible velocities, `q' = W xi + v_b`, `xi' = f(t, q, xi)`, in the words of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WrittenEquations {
-    /// The names of the unknowns: the coordinates, and behind them the quasi-velocities.
+    /// The names of the unknowns: first the coordinates, then the quasi-velocities.
     pub unknowns: Vec<String>,
-    /// Names of what is shared, with what they stand for, each before it is used.
+    /// Names of shared expressions with their formulas, each before its first use.
     pub statements: Vec<(String, String)>,
     /// The rate of each unknown.
     pub rates: Vec<String>,
@@ -20,8 +20,8 @@ pub struct WrittenEquations {
 }
 
 impl TextModel {
-    /// The reduced equations in the basis in use at a start. Where the text gives no basis and none is seen that holds everywhere, they
-    /// hold near the start. None where they are too large to be written.
+    /// The reduced equations in the basis in use at a start. If the text gives no basis and none is found that holds everywhere, they
+    /// hold only near the start. Returns `None` if they are too large to be written.
     #[must_use]
     pub fn written_equations(&self, start: &TextStart) -> Option<WrittenEquations> {
         let (n, m) = (self.coordinates.len(), self.constraints());

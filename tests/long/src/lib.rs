@@ -6,7 +6,7 @@ use sleigh::effects::Bowl;
 use sleigh::{Sleigh, SleighError, SleighState};
 
 /// The sleigh in a round bowl.
-pub type InBowl = With<Sleigh, (Bowl,)>;
+pub type InBowl = With<Sleigh, Bowl>;
 
 /// The step of the scene (s).
 pub const STEP: f64 = 0.05;
@@ -17,7 +17,7 @@ pub const STEP: f64 = 0.05;
 /// None: its numbers are valid.
 pub fn bowl(turn_rate: f64) -> Result<(InBowl, State<3>), SleighError> {
     let body = Sleigh::new(1.0, 1.0, 0.5)?;
-    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0])?,) };
+    let system = With { body, effects: Bowl::new([0.1, 0.1], [0.0, 0.0])? };
     let (q, v) = SleighState { speed: -1.0, turn_rate, ..SleighState::default() }.to_coordinates();
     let state = State::new(q, v, System::<3, 1>::angles(&system));
     Ok((system, state))

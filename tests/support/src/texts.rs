@@ -24,6 +24,11 @@ impl Model<3, 1> for Particle {
         ([0.1, 0.2, 0.3], [0.9, 0.7, 0.2 * 0.9])
     }
 
+    fn invariants<S: Scalar>(&self, q: &[S; 3], v: &[S; 3]) -> Vec<(&'static str, S)> {
+        let along = (q[1] * q[1] + 1.0) * v[0] * v[0] * (0.5 * self.m) + q[0] * q[0] * (0.5 * self.k);
+        vec![("energy along x and z", along)]
+    }
+
     /// Without a well: with `c = x' sqrt(1 + y^2)` and `w = y'` constant,
     /// `x = x0 + c/w (asinh y - asinh y0)`, `z = z0 + c/w (sqrt(1 + y^2) - sqrt(1 + y0^2))`.
     fn exact_from(&self, (q, v): &ModelState<3>, t: f64) -> Option<ModelState<3>> {
@@ -64,8 +69,10 @@ impl Model<3, 1> for KnifeEdge {
         ([0.0; 3], [0.0, 0.0, 1.0])
     }
 
-    fn invariants<S: Scalar>(&self, _q: &[S; 3], v: &[S; 3]) -> Vec<(&'static str, S)> {
-        vec![("turn momentum", v[2] * self.I)]
+    /// The hodograph is `u theta' - g sin(theta)` (m/s^2), with `u` the speed along the blade.
+    fn invariants<S: Scalar>(&self, q: &[S; 3], v: &[S; 3]) -> Vec<(&'static str, S)> {
+        let (sin, cos) = q[2].sin_cos();
+        vec![("turn momentum", v[2] * self.I), ("hodograph", (cos * v[0] + sin * v[1]) * v[2] - sin * self.g)]
     }
 
     /// With `w = theta'`, `c = (sin theta - sin theta0)/w` and `s = -(cos theta - cos theta0)/w`: `u = u0 + g c`,

@@ -2,10 +2,10 @@ use lagrangian::{Constraint, Piecewise, Scalar, System};
 
 /// A blade or an axle without mass under a body, at a point of its axis and along it: it does not slip aside.
 ///
-/// Its coordinates are those `(x, y, theta)` of the body.
+/// The coordinates are the body's `(x, y, theta)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blade {
-    /// How far ahead of the body's reference point (m).
+    /// Distance of the blade ahead of the body's reference point (m).
     pub ahead: f64,
 }
 
@@ -28,10 +28,10 @@ impl System<3, 1> for Blade {
     }
 }
 
-/// The same with a direction of its own, an angle in space: its coordinates are `(x, y, theta)` of the body and that angle.
+/// A blade with a direction of its own, an angle in space: its coordinates are `(x, y, theta)` of the body, and this angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteeredBlade {
-    /// How far ahead of the body's reference point (m).
+    /// Distance of the blade ahead of the body's reference point (m).
     pub ahead: f64,
 }
 

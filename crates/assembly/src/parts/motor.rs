@@ -1,7 +1,7 @@
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use sleigh::TimeFunction;
 
-/// A motor between two bodies: a torque `tau(t)` (N m) on the angle of the second, and `-tau(t)` on that of the first.
+/// A motor between two bodies: a torque `tau(t)` (N m) on the angle of the second, and `-tau(t)` on the angle of the first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor {
     /// The torque (N m).

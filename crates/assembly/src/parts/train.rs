@@ -10,7 +10,7 @@ pub struct Trailer {
     pub sleigh: Sleigh,
     /// The distance `b` of the hinge behind the blade before it (m); zero puts it on that blade.
     pub hitch: f64,
-    /// The distance `d` of the hinge ahead of its own blade (m), which is not zero.
+    /// The distance `d` of the hinge ahead of the trailer's own blade (m), which must not be zero.
     pub bar: f64,
 }
 
@@ -18,7 +18,7 @@ impl Trailer {
     /// A trailer of mass `m` (kg), inertia `I` about its centre of mass (kg m^2) and offset `a` (m).
     ///
     /// # Errors
-    /// [`SleighError`] names the parameter that is not finite, or not positive where it must be.
+    /// [`SleighError`] names the parameter that is not finite, or that must be positive and is not.
     pub fn new(mass: f64, inertia: f64, offset: f64, hitch: f64, bar: f64) -> Result<Self, SleighError> {
         Ok(Self { sleigh: Sleigh::new(mass, inertia, offset)?, hitch, bar })
     }
@@ -54,16 +54,16 @@ pub struct Train {
     /// The assembly.
     pub assembly: Assembly,
     trailers: Vec<Trailer>,
-    /// The rate of the rotor relative to the first blade at the start (rad/s), where there is one.
+    /// The rate of the rotor relative to the first blade at the start (rad/s), if there is a rotor.
     rotor_rate: Option<f64>,
 }
 
 impl Train {
-    /// A train behind the system `lead`, which may have constraints beside that of its blade; `body` makes the body of each trailer, with
-    /// what acts on it.
+    /// A train behind the system `lead`, which may have constraints beside its blade's. `body` makes the body of each trailer, with its
+    /// effects.
     ///
     /// # Errors
-    /// [`AssemblyError::Number`] where a bar has no length, or a distance is not finite.
+    /// [`AssemblyError::Number`] if a bar has no length, or a distance is not finite.
     pub fn new<Lead, Body, const M: usize>(
         lead: Lead,
         trailers: Vec<Trailer>,
@@ -84,11 +84,11 @@ impl Train {
         Ok(Self { assembly, trailers, rotor_rate: None })
     }
 
-    /// The same with a rotor on a bearing in the first blade, as a [`Flywheel`](sleigh::Flywheel): its spin inertia (kg m^2), its rate
+    /// The train with a rotor on a bearing in the first blade, as a [`Flywheel`](sleigh::Flywheel): its spin inertia (kg m^2), its rate
     /// relative to the blade at the start (rad/s), and the torque of its motor (N m) unless the bearing is free.
     ///
     /// # Errors
-    /// [`AssemblyError::Number`] where the inertia is not positive.
+    /// [`AssemblyError::Number`] if the inertia is not positive.
     pub fn with_rotor(mut self, inertia: f64, rate: f64, torque: Option<TimeFunction>) -> Result<Self, AssemblyError> {
         if !(inertia.is_finite() && inertia > 0.0) {
             let what = "the inertia of the rotor";
@@ -108,8 +108,8 @@ impl Train {
         &self.trailers
     }
 
-    /// The state in which the first blade is at `start` and the trailers have these headings (rad), or that of the blade
-    /// before them where the list ends: hinged, and no blade slipping.
+    /// The state with the first blade at `start` and the trailers at these headings (rad), hinged, with no blade slipping. A trailer
+    /// beyond the end of the list has the heading of the blade before it.
     ///
     /// With the hinge `H = P - b e` of a blade, the next has `P+ = H - d e+`, `omega+ = n+ . H' / d` and `u+ = e+ . H'`.
     #[must_use]
@@ -118,8 +118,8 @@ impl Train {
         AssemblyState::new(&self.assembly, &q, &v)
     }
 
-    /// Configuration and velocity of the same on a plane that turns at the rate `Omega` about the origin (rad/s), where the velocity across a blade is that of the plane,
-    /// `s = Omega n . (-y, x)`: the next blade has `omega+ = (n+ . H' - s+) / d`.
+    /// Configuration and velocity of the start on a plane that turns at the rate `Omega` about the origin (rad/s). Each blade then has the
+    /// velocity of the plane across it, `s = Omega n . (-y, x)`, and the next blade has `omega+ = (n+ . H' - s+) / d`.
     #[must_use]
     pub fn start_on_turntable(&self, table_rate: f64, start: &SleighState, headings: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let across = |x: f64, y: f64, sin: f64, cos: f64| table_rate * (x * cos + y * sin);
@@ -150,7 +150,7 @@ impl Train {
         (q, v)
     }
 
-    /// The smooth piece of it that holds at the time `t` (s), continued to all times.
+    /// The smooth piece of the train that holds at the time `t` (s), continued to all times.
     #[must_use]
     pub fn smooth_piece(&self, t: f64) -> Self {
         let Self { assembly, trailers, rotor_rate } = self;
@@ -171,14 +171,14 @@ impl Train {
         self.trailers.iter().zip(headings).map(behind).collect()
     }
 
-    /// Whether it has a rotor.
+    /// Whether the train has a rotor.
     #[must_use]
     pub fn has_rotor(&self) -> bool {
         self.rotor_rate.is_some()
     }
 
-    /// Angle (rad) and rate (rad/s) of the rotor relative to the first blade, where there is one, from coordinates and velocities of the
-    /// assembly.
+    /// Angle (rad) and rate (rad/s) of the rotor relative to the first blade, from coordinates and velocities of the assembly; `None`
+    /// without a rotor.
     #[must_use]
     pub fn rotor(&self, q: &[f64], v: &[f64]) -> Option<[f64; 2]> {
         let rotor = 3 * (1 + self.trailers.len());
@@ -186,8 +186,8 @@ impl Train {
         Some([q.get(rotor)? - q.get(HEADING)?, v.get(rotor)? - v.get(HEADING)?])
     }
 
-    /// Place, heading, speed and turn rate of a blade, counted from 0, from coordinates and velocities of the assembly; not numbers where these
-    /// lack it.
+    /// Place, heading, speed and turn rate of a blade, counted from 0, from coordinates and velocities of the assembly; NaN if these lack the
+    /// blade.
     #[must_use]
     pub fn blade(&self, q: &[f64], v: &[f64], k: usize) -> SleighState {
         let of = |x: &[f64]| [0, 1, 2].map(|i| x.get(3 * k + i).copied().unwrap_or(f64::NAN));

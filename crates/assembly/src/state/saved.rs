@@ -2,13 +2,13 @@ use super::AssemblyState;
 use crate::Assembly;
 use dla::{Checkpoint, CheckpointError};
 
-/// What every coordinate has one number of.
+/// The lists with one number for every coordinate.
 const ONE: [&str; 4] = ["q", "rest", "turns", "v"];
 
-/// What a coordinate has several numbers of, or none.
+/// The lists with any number of entries for a coordinate.
 const SOME: [&str; 2] = ["acceleration", "past"];
 
-/// What a static state has beside, and a coordinate of an assembly does not.
+/// The lists that a static state has and a coordinate of an assembly has not.
 const NONE: [&str; 4] = ["xi", "pi", "pi_rest", "closed"];
 
 impl AssemblyState {
@@ -28,7 +28,7 @@ impl AssemblyState {
     /// The state that [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none of so many coordinates.
+    /// [`CheckpointError`] if the checkpoint has no state with the number of coordinates of the assembly.
     pub fn load(checkpoint: &Checkpoint, assembly: &Assembly) -> Result<Self, CheckpointError> {
         let count = assembly.coordinates();
         let mut each = vec![Checkpoint::default(); count];

@@ -8,15 +8,14 @@ use std::ops::ControlFlow;
 
 /// The adaptive method of Dormand and Prince of order 8(5,3), from a library, on the reduced equations.
 ///
-/// A step of the schedule is an interval that the method crosses in steps of its own, as many as the tolerance asks for;
-/// the first is what the interval before left. The unknowns are those of [`Rk4Reduced`](crate::Rk4Reduced), the
-/// coordinates counted from the beginning of the interval. (Hairer, Norsett and Wanner 1993, section II.10; crate
-/// `differential-equations`.)
+/// A step of the schedule is an interval that the method crosses in steps of its own, as many as the tolerance asks for. Its first step has
+/// the length proposed at the end of the previous interval. The unknowns are as in [`Rk4Reduced`](crate::Rk4Reduced), with the coordinates
+/// counted from the beginning of the interval. (Hairer, Norsett and Wanner 1993, section II.10; crate `differential-equations`.)
 pub struct Dop853<const N: usize, const M: usize> {
     solver: Dop853Solver<N, M>,
-    /// The step to begin with (s); none before the first interval.
+    /// The first step (s); `None` before the first interval.
     proposed: Option<f64>,
-    /// What does work that is to be reported.
+    /// The sources whose work is reported.
     sources: PowerSources,
 }
 
@@ -42,7 +41,7 @@ type Dop853Solver<const N: usize, const M: usize> =
 impl<const N: usize, const M: usize> Dop853<N, M> {
     /// Steps tried within an interval before it is given up.
     pub const MAX_TRIES: u32 = 100_000;
-    /// Slopes that a step uses: eleven new stages, and the end of the step where it is accepted.
+    /// Slopes in a step: eleven new stages, and the end of the step if it is accepted.
     const SLOPES: u32 = 12;
 
     /// The method with the tolerance `epsilon`: the estimated error of a step stays, in the root mean square of its
@@ -54,7 +53,7 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
         Self { solver, proposed: None, sources: PowerSources::NONE }
     }
 
-    /// Crosses an interval of length `h`, shows where its steps end within it, and returns the steps tried.
+    /// Crosses an interval of length `h`, shows the inner ends of its steps, and returns the number of steps tried.
     #[inline]
     fn cross(
         &mut self,
@@ -115,11 +114,11 @@ struct ReducedSlopes<'a, const N: usize, const M: usize> {
     system: &'a dyn Mechanics<N, M>,
     t0: f64,
     q0: [f64; N],
-    /// Slopes that are still used. What the library asks for beyond them serves its interpolant, which nobody reads.
+    /// Slopes that are still used. Slopes beyond them serve the library's interpolant, which is not read.
     left: Cell<u32>,
-    /// Why the last slope could not be evaluated. The library makes such a step again, shorter.
+    /// Why the last slope could not be evaluated. The library repeats such a step with a shorter length.
     failure: Cell<Option<StepError>>,
-    /// What does work.
+    /// The sources whose work is measured.
     sources: PowerSources,
     /// The power at the stages of the step under way, and at its end (W).
     powers: Cell<[f64; 13]>,
@@ -128,14 +127,14 @@ struct ReducedSlopes<'a, const N: usize, const M: usize> {
 }
 
 impl<'a, const N: usize, const M: usize> ReducedSlopes<'a, N, M> {
-    /// Of an interval from `state` at the time `t0` (s).
+    /// The slopes for an interval from `state` at the time `t0` (s).
     #[inline]
     fn new(system: &'a dyn Mechanics<N, M>, sources: PowerSources, t0: f64, state: &State<N>) -> Self {
         let (left, failure, powers, work) = (Cell::new(0), Cell::new(None), Cell::new([0.0; 13]), Cell::new(0.0));
         Self { system, t0, q0: *state.q(), left, failure, sources, powers, work }
     }
 
-    /// Where the next step begins, the last has ended.
+    /// Begins a step with the power at the end of the step before.
     fn begin_step(&self) {
         if self.sources.any() {
             let [.., end] = self.powers.get();
@@ -143,7 +142,7 @@ impl<'a, const N: usize, const M: usize> ReducedSlopes<'a, N, M> {
         }
     }
 
-    /// Adds the work over a step of length `h`, accepted: that of one more unknown of the method, which no step depends on.
+    /// Adds the work (J) over an accepted step of length `h` (s), as one more unknown of the method on which no step depends.
     fn add_work(&self, h: f64) {
         if self.sources.any() {
             let mut mean = MeanPower::default();
@@ -176,7 +175,7 @@ impl<const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for ReducedSlo
             }
             Err(error) => {
                 self.failure.set(Some(error.into()));
-                // Not a number fails the library's test of the error.
+                // NaN fails the library's test of the error.
                 ([f64::NAN; N], [f64::NAN; N])
             }
         };
@@ -274,8 +273,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
     }
 }
 
-/// The end of an interval in which every change is so small that its square underflows: the library's measure of errors is a sum of
-/// squares, and refuses every step of a motion that has come so near to rest.
+/// The end of an interval in which every change is so small that its square underflows: the library measures errors by a sum of squares,
+/// and refuses every step so near to rest.
 #[cold]
 fn at_rest<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -292,7 +291,7 @@ fn at_rest<const N: usize, const M: usize>(
     })
 }
 
-/// Moves a state to where an interval has led, at the time `t` (s).
+/// Moves a state to the end of an interval, at the time `t` (s).
 #[inline]
 fn moved<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,

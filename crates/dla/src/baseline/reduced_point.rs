@@ -2,7 +2,7 @@ use differential_equations::traits::State;
 
 /// A point of the reduced equations: the increment since the start of an interval, and the quasi-velocities.
 ///
-/// Of the latter the first `N - M` count, so that there are `2 N - M` components.
+/// Only the first `N - M` quasi-velocities count, so that there are `2 N - M` components.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ReducedPoint<const N: usize, const M: usize> {
     pub(super) d: [f64; N],
@@ -10,7 +10,7 @@ pub(super) struct ReducedPoint<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> ReducedPoint<N, M> {
-    /// The components, mutable, with those of the other point beside them.
+    /// Calls `f` for every component, with the matching component of `other`.
     #[inline(always)]
     fn each(&mut self, other: &Self, mut f: impl FnMut(&mut f64, f64)) {
         for i in 0..N {

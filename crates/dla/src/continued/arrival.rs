@@ -87,7 +87,7 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
     }
 
     /// Iterates to convergence, after the correction `d` to `v`, which has the momenta `p`. Takes `self` by value, so that nothing of it
-    /// must be in memory where the first correction is enough.
+    /// must be in memory if the first correction is enough.
     #[inline(never)]
     fn settled(self, mut v: [f64; N], p: [f64; N], d: [f64; N]) -> Option<FoundMean<N, M>> {
         let (mut known, mut minus_mu) = (Some(p), [0.0; M]);

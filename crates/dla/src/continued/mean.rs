@@ -81,7 +81,7 @@ struct Begun<'a, D, const N: usize, const M: usize> {
     bordered: Bordered<N, M>,
     tolerance: f64,
     v: [f64; N],
-    /// The first correction, the impulse that was solved for with it, and the momenta where it was made.
+    /// The first correction, the impulse that was solved for with it, and the momenta from which it was made.
     d: [f64; N],
     lambda: [f64; M],
     first: Departure<N>,
@@ -90,7 +90,7 @@ struct Begun<'a, D, const N: usize, const M: usize> {
 }
 
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M> {
-    /// Iterates to convergence. Takes `self` by value, so that nothing of it must be in memory where the first correction is enough.
+    /// Iterates to convergence. Takes `self` by value, so that nothing of it must be in memory if the first correction is enough.
     #[inline(never)]
     fn settled(self) -> Option<(FoundMean<N, M>, [f64; N])> {
         let Self { increment, block, bordered, tolerance, mut v, d, mut lambda, first, at } = self;
@@ -105,7 +105,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M>
                 let sums = ends(&at);
                 change = sup(&difference(&sums, &both));
                 both = sums;
-                // After a correction the constraint is met up to its product with the distance from where its rows were taken.
+                // After a correction the constraint is met up to its product with the distance from the place of its rows.
                 let met = moved * size <= (SMALL * sup(v)).powi(2);
                 if met && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
                     change = 0.0;
@@ -119,7 +119,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M>
                 Some(d)
             },
         )?;
-        // Where the equations at `v` are met, the momenta at the end are the sum of those at both ends and the reaction. The last
+        // If the equations at `v` are met, the momenta at the end are the sum of the momenta of both ends and the reaction. The last
         // correction changes that sum in proportion to its size, as the one before did.
         if change * size > f64::EPSILON * before * sup(&both) {
             both = ends(&increment.momenta(&v));

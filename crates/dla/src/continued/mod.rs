@@ -20,7 +20,7 @@ struct FoundMean<const N: usize, const M: usize> {
     corrections: u32,
 }
 
-/// Whether a velocity meets `A v + b = 0` to the round-off of its terms, with that of the corrections that led to it.
+/// Whether a velocity meets `A v + b = 0` to the round-off of its terms and of the corrections that led to it.
 #[inline(always)]
 fn constraint_holds<const N: usize, const M: usize>(a: &[[f64; N]; M], b: &[f64; M], v: &[f64; N]) -> bool {
     let mut all = true;
@@ -58,7 +58,7 @@ fn are_met<const N: usize, const M: usize>(
     all
 }
 
-/// The momenta of both ends.
+/// The sums of the momenta of both ends.
 #[inline(always)]
 fn ends<const N: usize>(at: &Departure<N>) -> [f64; N] {
     from_fn(|i| at.residual[i] + at.arriving[i])
@@ -76,11 +76,11 @@ fn with_reaction<const N: usize, const M: usize>(mut p: [f64; N], a: &[[f64; N];
 }
 
 impl<D> Dla<D> {
-    /// The step in its general form by modified Newton from the predictor; none where that does not converge, or where nothing is
-    /// remembered.
+    /// The step in its general form, by modified Newton from the predictor; `None` if the iteration does not converge, or if no earlier
+    /// step is remembered.
     ///
-    /// The equations are those of [`Dla`], with multipliers. The Jacobian is that of an earlier step, so that a correction takes
-    /// first-order evaluations alone, and no elimination beyond the multipliers.
+    /// The equations are as in [`Dla`], with multipliers. The Jacobian is from an earlier step, so that a correction takes only first-order
+    /// evaluations and eliminates only the multipliers.
     #[inline(always)]
     pub(crate) fn continued_step<const N: usize, const M: usize>(
         &mut self,
@@ -108,8 +108,8 @@ impl<D> Dla<D> {
     }
 }
 
-/// Moves the state by a step with the mean velocity `v`, to `q1` with the velocity `v1`; none where forces overshoot, or where `q1` or `v1`
-/// is not finite.
+/// Moves the state by a step with the mean velocity `v`, to `q1` with the velocity `v1`; `None` if forces overshoot, or if `q1` or `v1` is
+/// not finite.
 #[inline(always)]
 fn advanced<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -238,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Most corrections of a smooth motion are accepted without a check, and the motion is that of steps made without memory.
+    /// Most corrections of a smooth motion are accepted without a check, and the motion agrees with steps made without memory.
     #[test]
     fn what_goes_unseen_is_rounding() {
         let start = State::new([0.4, -0.3, 0.2], [0.1, 0.6, 0.6 * (1.5 + 0.4_f64.sin())], [false; 3]);

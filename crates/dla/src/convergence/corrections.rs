@@ -4,7 +4,7 @@ use super::tolerances::{
 use crate::{History, NewtonError};
 use lagrangian::linear::largest;
 
-/// How corrections follow one another, by which the next one is predicted.
+/// How one correction follows from another, which predicts the next one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CorrectionKind {
     /// With the Jacobian of the point itself: with `w` the bound on the curvature, a correction `d` leaves `w d^2/2`.
@@ -16,7 +16,7 @@ pub enum CorrectionKind {
     Chord,
 }
 
-/// What an iteration asks of every correction.
+/// The settings of the convergence test for a correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// How the correction was made.
@@ -32,8 +32,8 @@ pub struct Demand {
     pub near: f64,
 }
 
-/// The velocity that in a step of length `h` moves the configuration `q` by its round-off only. A correction of a constraint on
-/// positions by the last digits of these is not smaller, however slow the motion is.
+/// The velocity that moves the configuration `q` by its round-off only, in a step of length `h`. The last digits of `q` cause corrections
+/// of this size in a constraint on positions, however slow the motion is.
 #[must_use]
 #[inline(always)]
 pub fn rounding_of_place(q: &[f64], h: f64) -> f64 {
@@ -119,18 +119,19 @@ impl<'a> Convergence<'a> {
         self.certain
     }
 
-    /// Whether corrections stall though the residuals are not round-off of their terms: they are that of the linear equations.
+    /// Whether corrections stall although the residuals are not round-off of their terms: the corrections are round-off of the linear
+    /// equations.
     #[inline(always)]
     #[must_use]
     pub fn is_unmet(&self) -> bool {
         self.unmet
     }
 
-    /// Tests a correction that leads to `x`: whether every component has converged. `roundings` gives the largest residual where the
-    /// correction was made, in units of the round-off of its terms; none where the equations do not know.
+    /// Tests a correction that leads to `x`: whether every component has converged. `roundings` gives the largest residual from which the
+    /// correction was made, in units of the round-off of its terms; `None` if the equations do not know.
     ///
     /// # Errors
-    /// [`NewtonError`] where the iteration does not converge.
+    /// [`NewtonError`] if the iteration does not converge.
     #[inline(always)]
     pub fn check(
         &mut self,
@@ -166,7 +167,7 @@ impl<'a> Convergence<'a> {
             settled &= !open;
             stalls |= open & stall;
         }
-        // Where the next correction is predicted to be round-off in all components, those that have not converged never will.
+        // If the next correction is predicted to be round-off in all components, components that have not converged never will.
         settled |=
             kind == CorrectionKind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
         self.watched &= !contracts;
@@ -174,7 +175,7 @@ impl<'a> Convergence<'a> {
         if !contracts || (stuck && !(settled || slight || self.met)) {
             let most = roundings();
             let within = |bound: f64| most.map_or(step <= BLIND * size, |most| most <= bound);
-            // Where the linear equations cannot be solved with less round-off, that counts too.
+            // If the linear equations cannot be refined, their round-off counts too.
             let chord = kind == CorrectionKind::Chord;
             let met = within(if chord || !refinable { OF_CORRECTION } else { ROUNDINGS });
             self.met |= met;
@@ -213,7 +214,7 @@ impl<'a> Convergence<'a> {
         d <= GONE * if start == 0.0 { self.size } else { start }
     }
 
-    /// Marks the components that stall as moving by round-off; whether all components have converged then.
+    /// Marks the components that stall as moving by round-off; returns whether all components have then converged.
     #[cold]
     fn stalled(&mut self, correction: &[f64]) -> bool {
         let mut all = true;

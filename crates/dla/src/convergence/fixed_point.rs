@@ -4,8 +4,8 @@ use crate::{History, NewtonError};
 /// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components with one unit each.
 ///
 /// A component has converged when linear convergence, at the rate of the last two iterations, predicts a next change of less than
-/// [`UNBIASED`] of it; or when its changes have twice not shrunk and are rounding: slight beside the largest component, or a few roundings of the terms that it is made of. Stopping any earlier would leave an error of the same sign in every
-/// step.
+/// [`UNBIASED`] of it; or when its changes have twice not shrunk and are rounding: slight beside the largest component, or a few roundings
+/// of its own terms. An earlier end would leave an error of the same sign in every step.
 #[derive(Debug)]
 pub struct FixedPoint<const G: usize, const N: usize> {
     components: [[Component; N]; G],
@@ -13,7 +13,7 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     noise: Option<[[f64; N]; G]>,
     /// The largest change of the last iteration.
     last: f64,
-    /// The least so far of the largest changes of two iterations: where places and momenta change in turns, the one is small where the other
+    /// The least so far of the largest changes of two iterations: if places and momenta change in turns, the one is small while the other
     /// is large, in their units.
     least: f64,
     /// Consecutive iterations that changed nothing but by round-off.
@@ -55,7 +55,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         }
     }
 
-    /// The same to this relative change, in place of [`UNBIASED`].
+    /// The test with the relative change `left`, in place of [`UNBIASED`].
     #[must_use]
     #[inline(always)]
     pub fn to(mut self, left: f64) -> Self {
@@ -63,7 +63,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         self
     }
 
-    /// The error where the last iteration led to a place in which the equations cannot be evaluated.
+    /// The error if the last iteration led to a place in which the equations cannot be evaluated.
     #[cold]
     #[must_use]
     pub fn lost(&self) -> NewtonError {
@@ -76,7 +76,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
     /// have.
     ///
     /// # Errors
-    /// [`NewtonError`] where the iteration does not converge.
+    /// [`NewtonError`] if the iteration does not converge.
     #[inline(always)]
     pub fn see(
         &mut self,

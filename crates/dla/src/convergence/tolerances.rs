@@ -23,11 +23,11 @@
 //! | [`SLOWEST`] | `1/20` | a search that begins near its end shrinks faster at first than it goes on | registers |
 //! | [`QUIET`], [`STALLS`] | `16`, `2` | what goes round among roundings is at its end | fixed points |
 //! | [`GROWTH_OF_FIXED_POINT`] | `1e3` | changes that oscillate may grow for a while | fixed points |
-//! | [`GROWTHS`] | `3` | so often in all the largest correction may grow | Newton's method |
+//! | [`GROWTHS`] | `3` | how many times in all the largest correction may grow | Newton's method |
 //!
-//! The unit of all is the component itself, except [`ROUNDINGS`], whose unit is the sum of the sizes of the terms of an
-//! equation, in momenta. A correction is never called rounding by its size beside other unknowns, but for [`SLIGHT`]: where
-//! forces are large and velocities small, the rounding of the equations is that of the forces.
+//! The unit of all is the component itself, except [`ROUNDINGS`], whose unit is the sum of the sizes of the terms of an equation, in
+//! momenta. Except for [`SLIGHT`], a correction is never called rounding by its size beside other unknowns: if forces are large and
+//! velocities small, the forces determine the rounding of the equations.
 
 /// Relative correction of a component that is settled.
 pub const SETTLED: f64 = 4.0 * f64::EPSILON;
@@ -38,74 +38,74 @@ pub const UNBIASED: f64 = f64::EPSILON / 64.0;
 /// Relative change that a linear convergence may leave in a method that no bias is asked of: half a unit in the last place.
 pub const HALF_A_UNIT: f64 = f64::EPSILON / 2.0;
 
-/// Corrections below this part of the largest unknown are rounding where they stall.
+/// Corrections below this fraction of the largest unknown are rounding if they stall.
 pub const SLIGHT: f64 = 64.0 * f64::EPSILON;
 
-/// The same of the changes of a fixed-point iteration, which go round in the rounding of all stages together.
+/// As [`SLIGHT`], for the changes of a fixed-point iteration, which cycle in the rounding of all stages together.
 pub const SLIGHT_OF_FIXED_POINT: f64 = 1024.0 * f64::EPSILON;
 
-/// A residual of so many roundings of its terms is rounding.
+/// A residual of at most this number of roundings of its terms is rounding.
 pub const ROUNDINGS: f64 = 8.0;
 
-/// A residual of so many roundings is rounding where corrections carry that of the linear equations too and cannot be refined further, or
-/// where what is looked at is what a correction changes the equations by.
+/// As [`ROUNDINGS`], if corrections also carry the rounding of linear equations that cannot be refined further, or if the test looks at
+/// what a correction changes in the equations.
 pub const OF_CORRECTION: f64 = 64.0;
 
-/// A guess with a residual of so many roundings is as good as the solution.
+/// A guess whose residual is at most this number of roundings is as good as the solution.
 pub const NEAR_ROUNDINGS: f64 = 64.0;
 
-/// As [`SLIGHT`], of equations that do not know the sizes of their terms.
+/// As [`SLIGHT`], for equations that do not know the sizes of their terms.
 pub const BLIND: f64 = 1e-11;
 
-/// A correction of more than this part of the one before stalls.
+/// A correction above this fraction of the one before stalls.
 pub const STALL: f64 = 0.25;
 
-/// A change of a fixed-point iteration of more than this part of the one before stalls.
+/// A change of a fixed-point iteration above this fraction of the one before stalls.
 pub const STALL_OF_FIXED_POINT: f64 = 0.5;
 
-/// Simplified corrections shrink by at least as much, or their derivatives are not good enough.
+/// Simplified corrections shrink to this fraction at most, or their derivatives are not good enough.
 pub const SHRINKING: f64 = 0.125;
 
-/// The second correction over the first, where the solution is the one near the start.
+/// Largest ratio of the second correction to the first if the solution is the one near the start.
 pub const CONTRACTION: f64 = 0.25;
 
-/// With derivatives of another point an unknown that goes to zero shrinks by the same factor for ever. It is zero below this
-/// part of its start.
+/// With derivatives of another point an unknown that goes to zero shrinks by the same factor for ever. Below this fraction of its start it
+/// counts as zero.
 pub const GONE: f64 = f64::EPSILON * f64::EPSILON;
 
-/// So many times in all the largest correction may grow.
+/// Number of times in all that the largest correction may grow.
 pub const GROWTHS: u32 = 3;
 
-/// Whether corrections of this size are rounding beside a largest unknown of that size, whatever the equations are. Below the
-/// smallest normal number everything is, since what comes to rest ends there.
+/// Whether corrections of this size are rounding beside a largest unknown `size`, for any equations. Every correction below the smallest
+/// normal number is rounding, since a motion that comes to rest ends there.
 #[must_use]
 #[inline(always)]
 pub fn is_slight(correction: f64, size: f64) -> bool {
     correction <= (SLIGHT * size).max(f64::MIN_POSITIVE)
 }
 
-/// Changes of a fixed-point iteration of so many roundings of their terms are rounding: what contracts by a factor `L` may go round in
-/// changes of `1/(1 - L)` times the rounding of all stages together.
+/// Changes of a fixed-point iteration of at most this number of roundings of their terms are rounding: an iteration that contracts by a
+/// factor `L` may cycle in changes of `1/(1 - L)` times the rounding of all stages together.
 pub const CYCLES: f64 = 64.0;
 
-/// So often a change of a fixed-point iteration must have been rounding and not have shrunk.
+/// Number of changes of a fixed-point iteration that must be rounding and not shrink before it counts as stalled.
 pub const STALLS: u32 = 2;
 
-/// After so many iterations in turn that changed nothing but by rounding a fixed-point iteration is at its end.
+/// A fixed-point iteration ends after this number of iterations in turn that change its values by rounding only.
 pub const QUIET: u32 = 16;
 
 /// Changes of a fixed-point iteration that oscillate may grow by this factor above the least so far.
 pub const GROWTH_OF_FIXED_POINT: f64 = 1e3;
 
-/// Relative changes that may still be to come where an iteration in registers ends. What is left out is the same in every step, and
-/// adds up: where the contraction was believed as the first iterations show it, a run of `gauss8` lost `5e-17` of its energy a step.
+/// Relative changes that may still be to come when an iteration in registers ends. The omitted part is the same in every step, and adds up:
+/// when the contraction was taken from the first iterations, a run of `gauss8` lost `5e-17` of its energy a step.
 pub const LEFT: f64 = f64::EPSILON / 16.0;
 
-/// Changes in registers below this part of what changes, that stall twice, are rounding.
+/// Changes in registers below this fraction of the changing value, that stall twice, are rounding.
 pub const OF_ROW: f64 = 1e-12;
 
-/// And below this part, once.
+/// Changes in registers below this fraction, that stall once, are rounding.
 pub const NOISE: f64 = 1e-15;
 
-/// No iteration in registers is expected to shrink its changes by more.
+/// Least factor by which an iteration in registers is expected to shrink its changes.
 pub const SLOWEST: f64 = 0.05;

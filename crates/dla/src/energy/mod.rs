@@ -52,7 +52,7 @@ impl Energy {
         Self { rule: EnergyRule::new::<S>(), work: 0.0 }
     }
 
-    /// The discrete work of the forces over the last step (J): by so much the energy has changed.
+    /// The discrete work of the forces over the last step (J), which is the change of the energy.
     #[must_use]
     pub fn work(&self) -> f64 {
         self.work
@@ -90,7 +90,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Energy {
     }
 }
 
-/// Eight places at once: of few coordinates a basis with its derivatives in all, of many with those along one after another.
+/// Eight places at once: with few coordinates a basis with all its derivatives, with many coordinates one derivative after another.
 const fn stack<const N: usize>() -> StackUse {
     StackUse { squares: if N <= AT_ONCE { 82 * (N + 1) } else { 440 }, rows: 24 }
 }
@@ -122,7 +122,7 @@ struct PathEnd<const N: usize> {
 }
 
 impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
-    /// The energy may miss the work by so many roundings; more is an error of the quadrature.
+    /// The energy may miss the work by this number of roundings; a larger miss is an error of the quadrature.
     const ROUNDINGS: f64 = 1024.0;
 
     /// Iterations after which the step fails.
@@ -207,8 +207,9 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
         if defect.abs() <= bound { Ok(()) } else { self.check_at_rest((defect, bound), steepest, path) }
     }
 
-    /// The same where the energy is small because its terms cancel, as in a motion across a slope; or where the motion is as small as the
-    /// round-off of the place, and the energy changes by its second order: the round-off of the forces times that of the place.
+    /// As [`Self::check`], if the energy is small because its terms cancel, as in a motion across a slope, or if the motion is as small as
+    /// the round-off of the place: the energy then changes by its second order, the round-off of the forces times the round-off of the
+    /// place.
     #[cold]
     #[inline(never)]
     fn check_at_rest(

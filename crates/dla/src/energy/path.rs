@@ -25,7 +25,7 @@ impl<const N: usize> EnergyPath<N> {
     }
 }
 
-/// Eight points on the path, and what is known of their quasi-velocities.
+/// Eight points on the path, with approximate quasi-velocities.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathPoints<const N: usize> {
     pub(super) q: [Lanes; N],
@@ -44,10 +44,10 @@ impl<const N: usize> PathPoints<N> {
         Self { q: same(*start.state.q()), xi: same(start.xi), gain: same(start.rest), pi: same(start.pi) }
     }
 
-    /// Moves the points onto `path`, where `weights` are `int_0^tau l_i`.
+    /// Moves the points onto `path`; `weights` are `int_0^tau l_i`.
     ///
-    /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start: exact where
-    /// that is constant in the basis, else one more fixed-point iteration within the others.
+    /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start. The correction is exact if that
+    /// matrix is constant in the basis; otherwise it is part of the fixed-point iteration.
     #[inline(always)]
     pub(super) fn follow(&mut self, path: &EnergyPath<N>, weights: &[Weights], start: &EnergyStart<N>, h: f64) {
         let mut increment = [Lanes::zero(); N];
@@ -71,7 +71,7 @@ impl<const N: usize> PathPoints<N> {
             }
         }
     }
-    /// The quasi-momenta on the path less those last evaluated. Differences from the start keep the digits.
+    /// The quasi-momenta on the path minus the ones last evaluated. Differences from the start keep the digits.
     #[inline(always)]
     pub(super) fn missing(&self, start: &EnergyStart<N>) -> [Lanes; N] {
         from_fn(|a| self.gain[a] - (self.pi[a] + -start.pi[a]))

@@ -9,8 +9,8 @@ use lagrangian::{Lanes, Twofold, from_fn, mapped};
 /// of fourth degree at `S = 4`. An oscillation by the angle `d` over a step is integrated with the relative error
 /// `d^16 (8!)^4 / (17 (16!)^3)`, which is `7e-16` at `d = 3` and far below rounding at the steps of an accurate run.
 ///
-/// The energy is kept by identities between the coefficients. Their rounding would break these by the same little in every
-/// step, and where the motion has an attractor the energy would drift; so they have twice the digits.
+/// The energy is kept by identities between the coefficients. Their rounding would break these by the same little in every step, and the
+/// energy would drift if the motion has an attractor; so they have twice the digits.
 ///
 /// The number of nodes is a value and no type, so that a step is compiled once for all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub(super) struct EnergyRule {
     averages: [Weights; MOST],
     /// `int_0^sigma l_i` at the nodes of the quadrature.
     to_nodes: [Weights; MOST],
-    /// The same at the points.
+    /// The weights at the points.
     to_points: [Weights; MOST],
 }
 
@@ -65,7 +65,7 @@ impl Weights {
 }
 
 impl EnergyRule {
-    /// Of the points, the first are the collocation nodes; then come the end and the start of the step.
+    /// The indices of the end and the start of the step among the points, after the collocation nodes.
     #[inline(always)]
     pub(super) fn ends(&self) -> (usize, usize) {
         (self.stages, self.stages + 1)

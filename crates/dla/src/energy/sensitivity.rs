@@ -33,7 +33,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Energy {
         let mut residual = difference(&constrained(&first.velocity, &a0, &eta), &v0).to_vec();
         let pi0 = first.quasi_momenta();
 
-        // The point of the path at `tau`, where the integrals of the Lagrange polynomials are `weights`.
+        // The point of the path at `tau`; `weights` are the integrals of the Lagrange polynomials to `tau`.
         let mut on_path = |tau: f64, weights: &[f64]| -> Result<EnergyPoint<N, M>, SensitivityError> {
             let q = advanced(&q0, h, weights, &q_rates);
             let point = EnergyPoint::at(model, t + h * tau, &q, &unknowns.take_some(dimension))?;

@@ -11,9 +11,9 @@ pub(super) struct EnergyStart<const N: usize> {
     pub(super) state: State<N>,
     /// Quasi-velocities.
     pub(super) xi: [f64; N],
-    /// The quasi-momenta of these.
+    /// The quasi-momenta of `xi`.
     pub(super) pi: [f64; N],
-    /// What the rounding of the quasi-velocities left out of the quasi-momenta.
+    /// The part of the quasi-momenta that the rounding of the quasi-velocities lost.
     pub(super) rest: [f64; N],
     /// `dxi/dpi`.
     pub(super) inverse_mass: [[f64; N]; N],
@@ -21,8 +21,8 @@ pub(super) struct EnergyStart<const N: usize> {
 
 impl<const N: usize> EnergyStart<N> {
     /// # Errors
-    /// [`StepError::Unsupported`] for a system that the methods on `D*` cannot do; [`StepError::Motion`] where its mass
-    /// matrix is degenerate.
+    /// [`StepError::Unsupported`] if the methods on `D*` cannot integrate the system; [`StepError::Motion`] if its mass matrix is
+    /// degenerate.
     pub(super) fn new<const M: usize>(
         system: &dyn Mechanics<N, M>,
         t0: f64,
@@ -47,8 +47,8 @@ impl<const N: usize> EnergyStart<N> {
 }
 
 impl<const N: usize> EnergyStart<N> {
-    /// Takes the inverse mass matrix of where the velocity leads within half the step: where masses grow twofold in the step, that of the
-    /// beginning gives corrections that grow. None where it is singular.
+    /// Takes the inverse mass matrix at the place to which the velocity leads in half the step: if masses double within the step,
+    /// corrections with the mass matrix of the beginning grow. `None` if the matrix is singular.
     #[cold]
     #[inline(never)]
     pub(super) fn take_mass_ahead<const M: usize>(
@@ -63,9 +63,9 @@ impl<const N: usize> EnergyStart<N> {
         Some(())
     }
 
-    /// The rounding of the rates of the coordinates and of the quasi-momenta, and of the quasi-velocities, over a step from here: the larger of
-    /// those at its beginning and where its velocity leads. Not where an iteration has led, which may be where numbers are large because there
-    /// is no solution. None where the motion is degenerate.
+    /// The rounding of the rates of the coordinates, of the rates of the quasi-momenta, and of the quasi-velocities, over a step from here:
+    /// the larger of the values at its beginning and at the place to which its velocity leads. An iterate is no place for it: without a
+    /// solution its numbers may be large. Zero if the motion is degenerate.
     #[cold]
     #[inline(never)]
     pub(super) fn rounding<const M: usize>(&self, system: &dyn Mechanics<N, M>, t0: f64, h: f64) -> [[f64; N]; 3] {
@@ -89,8 +89,8 @@ impl<const N: usize> EnergyStart<N> {
         [q_rate, pi_rate, xi]
     }
 
-    /// The second order of the rounding of the energy (J) over a step from here: that of the forces, times that of the place and what
-    /// they move it by.
+    /// The second order of the rounding of the energy (J) over a step from here: the rounding of the forces, times the rounding of the
+    /// place and the distance that the rounding of the forces moves it.
     #[cold]
     #[inline(never)]
     pub(super) fn energy_rounding<const M: usize>(&self, system: &dyn Mechanics<N, M>, t0: f64, h: f64) -> f64 {
@@ -103,7 +103,7 @@ impl<const N: usize> EnergyStart<N> {
     }
 }
 
-/// `carried - pi`; zero where it is more than rounding, as when the step before was made with another system.
+/// `carried - pi`; zero if it is more than rounding, as after a step with another system.
 fn rounding<const N: usize>(carried: &[Twofold; N], pi: &[f64; N]) -> [f64; N] {
     let rest = from_fn(|a| (carried[a] - Twofold::from(pi[a])).hi);
     if largest(&rest) <= BLIND * largest(pi) { rest } else { [0.0; N] }
@@ -116,7 +116,7 @@ pub(super) const MOVING: StepError = StepError::Unsupported {
 
 /// Refuses `b != 0` and a Lagrangian, constraint or basis that changes with time.
 ///
-/// The time is not one that a period of the system is likely to share with the step.
+/// The test compares the start with a time that a period of the system is unlikely to share with the step.
 fn autonomous<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     t0: f64,

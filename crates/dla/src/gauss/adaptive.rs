@@ -13,27 +13,26 @@ use std::ops::ControlFlow;
 
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
 ///
-/// The highest Legendre coefficient of the slopes of a step tells how smooth the motion is along it: where coefficients fall
-/// off evenly, its power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. Where functions of the
-/// system have corners or change with time, the defect of the equations at other points is a second estimate, which sees corners, jumps and
-/// pulses. Steps
-/// are powers of the fourth root of two (s), so that the polynomial of one is continued into the next by a few fixed matrices.
-/// Stages are iterated to a fraction of the tolerance, not to rounding: on the constraint the method is by construction, but
-/// it is symmetric to the tolerance only, and what [`Gauss`] keeps over long runs it does not.
+/// The highest Legendre coefficient of the slopes of a step shows how smooth the motion is along it: if coefficients fall off evenly, its
+/// power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. If functions of the system have
+/// corners or change with time, the defect of the equations at other points is a second estimate, which detects corners, jumps and pulses.
+/// Steps are powers of the fourth root of two (s), so that a few fixed matrices continue the polynomial of one step into the next. Stages
+/// are iterated to a fraction of the tolerance, not to rounding: the method is on the constraint by construction, but it is symmetric to
+/// the tolerance only, and does not keep what [`Gauss`] keeps over long runs.
 ///
 /// (Compare Antonana, Makazaga and Murua 2017, Numer. Algorithms 76, 861-880.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GaussAdaptive {
     gauss: Gauss,
     tolerance: f64,
-    /// How rough a step may be.
+    /// The largest roughness of a step.
     aim: f64,
     /// The degree of the predictor, the polynomial by which the slopes of a step are continued to the next. The looser the tolerance, the
     /// further slopes are from it, and the lower the best degree.
     degree: usize,
     /// The next step, in quarter octaves of a second.
     quarters: Option<i32>,
-    /// What is to be thought of a step that looks smooth; not known before the first.
+    /// The doubt in steps that look smooth; `None` before the first step.
     doubt: Option<Doubt>,
 }
 
@@ -41,7 +40,8 @@ impl GaussAdaptive {
     /// Steps tried within an interval before it is given up.
     pub const MAX_TRIES: u32 = 100_000;
 
-    /// The method with `S` stages, from two to eight, and the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in every component.
+    /// The method with `S` stages, from two to eight, and the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in
+    /// every component.
     #[must_use]
     pub fn new<const S: usize>(epsilon: f64) -> Self {
         let (aim, degree) = (roughest(S, epsilon), degree(S, epsilon));
@@ -49,20 +49,20 @@ impl GaussAdaptive {
     }
 }
 
-/// What a step shows of the length that it should have had.
+/// A step that was made, and the length that it should have had.
 struct Tried<const N: usize> {
     taken: TakenStep<N>,
     /// The step that would have met the tolerance, in quarter octaves from this one.
     longer: i32,
 }
 
-/// By so many is one shorter whose stages did not converge.
+/// Quarter octaves by which a step is shortened if its stages did not converge.
 const CUT_BACK: i32 = 3;
-/// A step that should have been so much shorter, or more, is taken again.
+/// A step that should have been shorter by this number of quarter octaves, or more, is taken again.
 const REFUSED: i32 = -3;
 impl GaussAdaptive {
-    /// One step of length `h`; by how many quarter octaves another is to be shorter, where its stages do not converge, or it is too rough. One
-    /// that has `grown` is much longer than the last.
+    /// Makes one step of length `h`. Fails with the number of quarter octaves by which the next try is to be shorter, if its stages do not
+    /// converge or it is too rough. A step that has `grown` is much longer than the last.
     #[inline(always)]
     fn attempt<const N: usize, const M: usize>(
         &self,
@@ -111,7 +111,7 @@ impl GaussAdaptive {
     }
 }
 
-/// The length of a step cut at the end of an interval: far from all others.
+/// The length of a step cut at the end of an interval: far from every other length.
 const CUT: i32 = i32::MAX / 2;
 
 impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
@@ -170,7 +170,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
         let (mut method, mut state) = (*self, *state);
-        // Who asks where steps end wants no work.
+        // The caller asks for the ends of steps, and needs no work.
         method.gauss.sources = PowerSources::NONE;
         if !memory.is_empty() {
             OneStep::<N, M>::recall(&mut method, memory, &state);
@@ -182,7 +182,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
 }
 
 impl GaussAdaptive {
-    /// Crosses an interval, shows where its steps end within it, and tells where it was stopped.
+    /// Crosses an interval, and shows the inner ends of its steps to `see`; returns the time at which `see` stopped it.
     fn cross<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
@@ -240,8 +240,9 @@ impl GaussAdaptive {
     }
 }
 
-/// A first step: half of the shortest time in which a velocity changes by itself, the interval where nothing changes. Where functions have
-/// corners or change with time less than that, and a small part of the interval: what is at rest now may be pushed later.
+/// The first step (quarter octaves): half of the shortest time in which a velocity changes by itself, or the interval if nothing changes.
+/// If functions have corners or change with time, it is a fifth of that time, or 1/32 of the interval: a system at rest may be pushed
+/// later.
 fn first<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, t: f64, whole: f64, state: &State<N>) -> i32 {
     let slope = state.quasi_velocities(system, t).and_then(|xi| system.reduced_slope(t, state.q(), &xi));
     let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));

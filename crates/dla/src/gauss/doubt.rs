@@ -5,26 +5,26 @@ use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_legendre, lagrange};
 use lagrangian::{Smoothness, from_fn};
 
-/// How far the evenness of a step's Legendre coefficients is to be trusted, which alone cannot tell a corner, a jump or a pulse from a smooth
-/// motion: by the kind of functions that the system has.
+/// How far the Legendre coefficients of a step are trusted. They alone cannot tell a corner, a jump or a pulse from a smooth motion, so the
+/// trust depends on the kind of functions that the system has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Doubt {
-    /// A step is looked at again where its coefficients tell of a larger error than this, in tolerances; none of a system whose functions are
-    /// smooth, and do not change with time: its steps are those of the coefficients alone.
+    /// A step is examined again if its coefficients show an error above this (tolerances). `None` if the functions of the system are smooth
+    /// and do not change with time: the coefficients alone then determine its steps.
     above: Option<f64>,
 }
 
-/// The error of a step, in tolerances, that is taken; a run has many corners.
+/// Largest accepted error of a step (tolerances); a run has many corners.
 const MOST: f64 = 0.5;
-/// Coefficients below so many tolerances are those of the iteration's own error.
+/// Coefficients below this (tolerances) come from the error of the iteration.
 const SMALL: f64 = 2.0;
 /// The part of a step beyond its first or last node.
 const OUTSIDE: f64 = 0.02;
-/// So many points between the nodes.
+/// Number of points between the nodes.
 const POINTS: usize = 9;
 
-/// The Gauss rule with nine nodes in a step of fewer, which it finds wherever these missed something: integrals and values of the Lagrange
-/// polynomials of the stages there, and the values at both ends.
+/// The Gauss rule with nine nodes, for a step whose own rule has fewer and may have missed something: integrals and values of the Lagrange
+/// polynomials of the stages at its nodes, and their values at both ends.
 #[derive(Debug, PartialEq)]
 pub(super) struct Between {
     nodes: [f64; POINTS],
@@ -35,7 +35,7 @@ pub(super) struct Between {
 }
 
 impl Between {
-    /// Those of a rule with these nodes.
+    /// The points for a rule with these nodes.
     pub(super) fn of(nodes: &[f64]) -> Self {
         let (points, weights) = gauss_legendre::<POINTS>();
         let (inner, shares) = gauss_legendre::<8>();
@@ -58,7 +58,7 @@ pub(super) struct Attempt<'a, const N: usize> {
     /// Coordinates and quasi-velocities at its beginning and at its end.
     pub(super) ends: [[&'a [f64; N]; 2]; 2],
     pub(super) slopes: &'a StageSlopes<N>,
-    /// What a slope counts, in tolerances.
+    /// The weight of each slope, in tolerances.
     pub(super) counts: &'a [[f64; N]; 2],
 }
 
@@ -66,17 +66,17 @@ pub(super) struct Attempt<'a, const N: usize> {
 type Pair<const N: usize> = [[f64; N]; 2];
 
 impl Doubt {
-    /// That of a system.
+    /// The doubt for functions of this smoothness.
     pub(super) fn of(Smoothness { corners, driven }: Smoothness) -> Self {
         Self { above: if corners { Some(MOST) } else { driven.then_some(60.0 * MOST) } }
     }
 
-    /// By how many times too large the error of a step is, where it is; `grown` is one that is much longer than the last, over which nothing
-    /// is known yet.
+    /// The factor by which the error of a step is too large; `None` if it is not. A step that has `grown` is much longer than the last, so
+    /// nothing is known of its later part.
     ///
-    /// Two estimates, which differ in kind. The defect of the equations, summed by a quadrature at other points than the stages, is the error of
-    /// the step where the motion is smooth, and of its order where it is not, but for an accident. The defect without its signs is weighed
-    /// by how slowly the coefficients fall off. And what happens beyond the last node, or before the first, shows at the ends.
+    /// There are two estimates, of different kinds. The defect of the equations, summed by a quadrature at other points than the stages, is
+    /// the error of the step if the motion is smooth, and with rare exceptions of its order if it is not. The sum of the sizes of the
+    /// defects is weighted by how slowly the coefficients fall off. Changes beyond the last node, or before the first, show at the ends.
     #[inline]
     pub(super) fn excess<const N: usize, const M: usize>(
         self,
@@ -166,7 +166,8 @@ impl<const N: usize> Attempt<'_, N> {
         from_fn(|which| from_fn(|k| start[which][k] + h * moved[which][k]))
     }
 
-    /// What the slopes of the equations at a point are more than those of the polynomial, in tolerances; none where there are none.
+    /// The slopes of the equations at a point minus the slopes of the polynomial, in tolerances; `None` if the equations have no slopes
+    /// there.
     fn defect<const M: usize>(
         &self,
         system: &dyn Mechanics<N, M>,

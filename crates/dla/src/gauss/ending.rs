@@ -14,7 +14,7 @@ pub(super) struct Ending {
     pub(super) limit: u32,
     /// An iteration whose contraction factor is above this does not converge.
     pub(super) hopeless: f64,
-    /// Iterations that are made without a test, where there is a predictor.
+    /// Iterations that are made without a test, if there is a predictor.
     pub(super) unseen: u32,
 }
 
@@ -26,14 +26,13 @@ pub(super) struct StageSearch {
     /// The last change, and its ratio to the one before.
     last: f64,
     rate: f64,
-    /// The contraction factor: the last of these ratios that is not one of round-off; zero where there was none, as of a motion whose
-    /// slopes are constant.
+    /// The contraction factor: the last ratio of changes above round-off; zero if there was none, as in a motion whose slopes are constant.
     pub(super) contraction: f64,
     /// How many small changes have stalled.
     stalled: u32,
 }
 
-/// What follows from a change.
+/// The consequence of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum EndingVerdict {
     Continue,
@@ -59,7 +58,7 @@ impl Ending {
 }
 
 impl StageSearch {
-    /// Counts an iteration; whether it is made without a test.
+    /// Counts an iteration; returns true if it has no test.
     #[inline(always)]
     pub(super) fn next_is_unseen(&mut self) -> bool {
         self.iterations += 1;
@@ -97,8 +96,8 @@ impl StageSearch {
     }
 }
 
-/// Iterations that are made without a test where there is no predictor: at first slopes may be zero that are not zero in the end, and give
-/// no unit for changes.
+/// Iterations without a test if there is no predictor: slopes that are not zero in the end may be zero at first, and give no unit for
+/// changes.
 const ANEW: u32 = 3;
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub struct Collocation<'a, const N: usize> {
     /// The slopes of the last step, and the matrix that continues their polynomial to this one.
     pub(super) before: Option<([&'a StageRows<N>; 2], &'a Square)>,
     pub(super) ending: Ending,
-    /// Inverse units of the velocities and of the accelerations; their own sizes where none are given.
+    /// Inverse units of the velocities and of the accelerations; `None` for their own sizes.
     pub(super) counts: Option<[[f64; N]; 2]>,
     /// Where the slopes are left.
     pub(super) slopes: &'a mut StageSlopes<N>,
@@ -77,7 +77,7 @@ pub struct Found<const N: usize> {
     pub(super) increment: [f64; N],
     /// `h sum_j b_j a_j`.
     pub(super) gain: [f64; N],
-    /// The largest of the highest Legendre coefficients of the slopes, in their units; zero where none were given.
+    /// The largest of the highest Legendre coefficients of the slopes, in their units; zero if no units were given.
     pub(super) roughness: f64,
     pub(super) iterations: u32,
     /// The contraction factor of the last iteration.
@@ -92,7 +92,7 @@ impl<const N: usize> fmt::Debug for Collocation<'_, N> {
     }
 }
 
-/// Solves for the stages of a system in vector registers; none where the machine has none that are known here.
+/// Solves for the stages of a system in vector registers; `None` if the machine has none that are known here.
 #[inline]
 pub(crate) fn collocate<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,

@@ -1,7 +1,7 @@
 use super::lanes::StageSlopes;
 use crate::State;
 
-/// Of larger systems nothing is remembered.
+/// Larger systems keep no memory.
 const COORDINATES: usize = 12;
 
 /// The predictor of the stages: the slopes of the last step, whose polynomial is continued to the nodes of the next.
@@ -13,7 +13,7 @@ pub(super) struct GaussMemory {
     known: bool,
     velocity: [[f64; 8]; COORDINATES],
     acceleration: [[f64; 8]; COORDINATES],
-    /// The step, and its length in quarter octaves where it is one of them.
+    /// The step (s), and its length in quarter octaves if it is a whole number of them.
     h: f64,
     pub(super) quarters: i32,
     /// The number of iterations of the last step.
@@ -36,7 +36,7 @@ impl GaussMemory {
         v: [0.0; COORDINATES],
     };
 
-    /// Remembers a step of length `h` that took so many iterations and ended in `state`.
+    /// Remembers a step of length `h` that took `iterations` iterations and ended in `state`.
     #[inline(always)]
     pub(super) fn keep<const N: usize>(
         &mut self,
@@ -55,7 +55,7 @@ impl GaussMemory {
         }
     }
 
-    /// The slopes, where the last step ended in `state`.
+    /// The slopes of the last step; `None` unless it ended in `state`.
     #[inline(always)]
     pub(super) fn rows<const N: usize>(&self, state: &State<N>) -> Option<[&[[f64; 8]; N]; 2]> {
         if !self.known || self.q.first_chunk::<N>() != Some(state.q()) || self.v.first_chunk::<N>() != Some(state.v()) {
@@ -64,14 +64,14 @@ impl GaussMemory {
         Some([self.velocity.first_chunk()?, self.acceleration.first_chunk()?])
     }
 
-    /// How many iterations of the next step are made without a convergence test, which takes a third of their time. The step will take
-    /// about as many iterations as the last one, and the tests of the last few show the rate of contraction.
+    /// The number of iterations of the next step that are made without a convergence test, which takes a third of their time. The step will
+    /// take about as many iterations as the last one, and the tests of the last few show the rate of contraction.
     #[inline(always)]
     pub(super) fn unseen(&self) -> u32 {
         self.iterations.saturating_sub(4)
     }
 
-    /// Whether the last step had that length.
+    /// Whether the last step had the length `h`.
     #[inline(always)]
     pub(super) fn is_of_length(&self, h: f64) -> bool {
         self.h.to_bits() == h.to_bits()
@@ -87,7 +87,7 @@ impl GaussMemory {
         rows.chain(&rest).chain(&self.q).chain(&self.v).copied().collect()
     }
 
-    /// From what [`save`](Self::save) gave; from anything else as before the first step.
+    /// Restores the numbers of [`save`](Self::save); any other list gives the memory before the first step.
     pub(super) fn load(numbers: &[f64]) -> Self {
         let mut memory = Self { known: true, ..Self::NONE };
         let mut length = [0.0; 3];

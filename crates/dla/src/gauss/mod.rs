@@ -28,16 +28,16 @@ use secants::Secants;
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
 /// velocities, with `s` stages, of order `2 s`.
 ///
-/// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
-/// below the time constants of the motion, until their changes are round-off. Where it does not converge the solution is followed from a step of
-/// length zero, by an iteration that is accelerated by its own secants; the step fails where that one does not converge.
+/// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration until their changes are round-off; it
+/// converges for steps below the time constants of the motion. If it does not converge, the solution is followed from a step of length
+/// zero, by an iteration that its own secants accelerate; if that does not converge either, the step fails.
 ///
-/// Where a system knows its reduced equations by hand ([`System::reduced`](lagrangian::System::reduced)), up to eight stages are computed at once,
-/// in the vector registers of the machine, beginning with the polynomial of the step before; elsewhere one after another. The
-/// two agree to round-off. Vector registers multiply and add with one rounding, so the last bits depend on the machine.
+/// If a system knows its reduced equations by hand ([`System::reduced`](lagrangian::System::reduced)), up to eight stages are computed at
+/// once, in the vector registers of the machine, beginning with the polynomial of the step before; otherwise one after another. The two
+/// agree to round-off. Vector registers multiply and add with one rounding, so the last bits depend on the machine.
 ///
-/// Constraints on positions that are of second degree hold by themselves; onto others the end of the step is projected, in
-/// the kinetic metric. It moves by the error of the step, so the order stays, and the symmetry is lost by so much.
+/// Constraints on positions that are of second degree hold by themselves. Onto all other ones the end of the step is projected, in the
+/// kinetic metric. The projection moves it by the error of the step, so the order stays, and the symmetry holds to that error only.
 ///
 /// (The book, (4.6); Hairer, Lubich and Wanner 2006, section II.1.3; the stopping rule as in Antonana, Makazaga and Murua 2017, Numer.
 /// Algorithms 76, 861-880.)
@@ -47,7 +47,7 @@ pub struct Gauss {
     /// Whether all stages may be computed at once.
     together: bool,
     memory: GaussMemory,
-    /// What does work that is to be reported.
+    /// The sources whose work is reported.
     sources: PowerSources,
     /// Iterations after which the step fails.
     pub max_iterations: u32,
@@ -61,13 +61,13 @@ struct StagesInTurn<const N: usize> {
 }
 
 impl<const N: usize> StagesInTurn<N> {
-    /// The slopes of so many stages, one stage after the other.
+    /// The slopes of the first `stages` stages, one stage after the other.
     fn numbers(&self, stages: usize) -> Vec<f64> {
         let both = self.velocity.iter().zip(&self.acceleration).take(stages);
         both.flat_map(|(velocity, acceleration)| velocity.iter().chain(acceleration)).copied().collect()
     }
 
-    /// Those of which these are the [`numbers`](Self::numbers).
+    /// The slopes of which these are the [`numbers`](Self::numbers).
     fn of(numbers: &[f64]) -> Self {
         let mut stages = Self { velocity: [[0.0; N]; 8], acceleration: [[0.0; N]; 8] };
         let places = stages.velocity.iter_mut().zip(&mut stages.acceleration);
@@ -99,13 +99,13 @@ impl Gauss {
         self.rule.stages
     }
 
-    /// The method with every stage computed by itself: the same map to round-off, and what lanes are tested against.
+    /// The method with every stage computed by itself: the same map to round-off, against which lanes are tested.
     #[must_use]
     pub fn one_by_one(self) -> Self {
         Self { together: false, ..self }
     }
 
-    /// The stages all at once, their slopes left where they belong. None where they are to be found one by one.
+    /// Computes the stages all at once and leaves their slopes in `slopes`; `None` if they must be found one by one.
     #[inline(always)]
     fn at_once<const N: usize, const M: usize>(
         &self,
@@ -136,7 +136,8 @@ impl Gauss {
         }
     }
 
-    /// The stages one after another; where the iteration does not converge, `followed` from a step of length zero if that is asked for.
+    /// Computes the stages one after another. If the iteration does not converge and `followed` is set, follows them from a step of length
+    /// zero.
     fn in_turn<const N: usize, const M: usize>(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -163,8 +164,8 @@ impl Gauss {
         Ok(TakenStep { increment, gain, iterations })
     }
 
-    /// The work over a step from `q0` by these slopes of its stages (J), where somebody asked and something may do work. It is one more
-    /// unknown `w' = P(t, q, v)` of the collocation, which has its order.
+    /// The work (J) over a step from `q0` by these slopes of its stages; `None` if no source is measured. It is one more unknown
+    /// `w' = P(t, q, v)` of the collocation, and has its order.
     #[inline(always)]
     fn work<const N: usize, const M: usize>(
         &self,
@@ -200,8 +201,8 @@ impl Gauss {
         from_fn(|i| h * (0..self.stages()).map(|j| factor(j) * slopes[j][i]).sum::<f64>())
     }
 
-    /// The stages at the end of the branch of solutions that begins with a step of length zero, where they are those of `stages`; the number
-    /// of iterations. None where the branch leads to a step that turns too far or does not resolve the motion.
+    /// Follows the branch of solutions that begins with a step of length zero to its end, and leaves the stages there in `stages`; returns
+    /// the number of iterations. `None` if the branch leads to a step that turns too far or does not resolve the motion.
     #[cold]
     #[inline(never)]
     fn follow<const N: usize, const M: usize>(
@@ -211,7 +212,7 @@ impl Gauss {
         start: (&[f64; N], &[f64; N]),
         stages: &mut StagesInTurn<N>,
     ) -> Option<u32> {
-        /// A branch that is not followed in so many parts is given up: a motion that blows up has none.
+        /// Maximum number of parts in which a branch is followed: a motion that blows up has no branch.
         const MOST: u32 = 6;
         let (mut iterations, mut parts) = (0, 0);
         *stages = branch::followed(stages, 0.5, |part, stages| {
@@ -230,9 +231,10 @@ impl Gauss {
 
     /// Whether slopes are smooth along the step: a polynomial of the degree of the method follows them.
     fn resolves<const N: usize>(&self, slopes: &[[f64; N]; 8]) -> bool {
-        /// The highest Legendre coefficient of what is resolved, relative to the slope; its power `2 s / (s - 1)` is about the error of a step.
+        /// Largest value of the highest Legendre coefficient, relative to the slope, of a motion that is resolved; its power
+        /// `2 s / (s - 1)` is about the error of a step.
         const ROUGH: f64 = 0.05;
-        /// What is so much smaller than the others is not looked at.
+        /// Least unit for a slope, relative to the largest slope.
         const SMALL: f64 = 1e-3;
         let count = self.stages();
         let size = |i: usize| slopes[..count].iter().fold(0.0, |most, slope| larger(most, slope[i]));
@@ -298,7 +300,7 @@ struct TakenStep<const N: usize> {
 }
 
 impl<const N: usize> TakenStep<N> {
-    /// By stages that were found at once; none where they are not numbers.
+    /// The step of stages that were found at once; `None` if they are not finite.
     #[inline(always)]
     fn at_once(found: &lanes::Found<N>) -> Option<Self> {
         let lanes::Found { increment, gain, iterations, .. } = *found;
@@ -324,7 +326,7 @@ impl<const N: usize> TakenStep<N> {
     }
 }
 
-/// Of any number of stages: their slopes are few numbers.
+/// For any number of stages: their slopes are few numbers.
 pub(crate) const USE: StackUse = StackUse { squares: 38, rows: 20 };
 
 impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {

@@ -1,14 +1,14 @@
-//! How long the next step may be.
+//! The length of the next step.
 use super::rule::{LONGER, SHORTER};
 use lagrangian::linear::larger;
 use lagrangian::octaves;
 
 /// The largest roughness of a step at the tolerance one.
 const SMOOTHNESS: f64 = 2.0;
-/// Bounds on the contraction that the next step should have, in octaves an iteration: a contraction factor of `2^-0.75 = .6` is enough
-/// where few iterations are needed, `2^-1.75 = .3` where many are (`docs/methods/gauss.md`).
+/// Bounds on the contraction that the next step should have, in octaves an iteration: a contraction factor of `2^-0.75 = .6` is enough if
+/// few iterations are needed, `2^-1.75 = .3` if many are (`docs/methods/gauss.md`).
 const SHRINKING: [f64; 2] = [0.75, 1.75];
-/// Between these bounds the iteration of a step is to converge within so many.
+/// Number of iterations in which a step should converge, between these bounds.
 const ITERATIONS: f64 = 12.0;
 
 /// The largest roughness of a step at the tolerance `epsilon`: its power `2 s / (s - 1)` is about the error of the step.
@@ -23,8 +23,8 @@ pub(super) fn degree(stages: usize, epsilon: f64) -> usize {
     (1.5 - 0.5 * epsilon.log10()).clamp(0.0, stages as f64 - 1.0) as usize
 }
 
-/// By how many quarter octaves the next step may be longer than one that had `rough` times the largest roughness, and the contraction
-/// factor `rate` in the last of its iterations.
+/// Number of quarter octaves by which the next step may be longer than a step that had `rough` times the largest roughness, and the
+/// contraction factor `rate` in its last iteration.
 #[inline(always)]
 pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i32 {
     // Roughness goes with the power s - 1 of the step.
@@ -37,7 +37,8 @@ pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i
     if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer }
 }
 
-/// By how many quarter octaves a step is to be shorter whose error is so many times too large: a jump goes with the first power of it.
+/// Number of quarter octaves by which a step must be shorter if its error is `excess` times too large: the error at a jump is proportional
+/// to the step.
 pub(super) fn shorter(excess: f64) -> i32 {
     (4.0 * octaves(excess)).ceil().clamp(3.0, f64::from(SHORTER)) as i32
 }

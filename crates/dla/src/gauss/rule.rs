@@ -9,15 +9,15 @@ use std::sync::OnceLock;
 pub(crate) struct GaussRule {
     pub(crate) nodes: [f64; 8],
     pub(crate) weights: [f64; 8],
-    /// The coefficients `a[i][j]` by columns: column `j` has those of slope `j` in every stage.
+    /// The coefficients `a[i][j]` by columns: column `j` has the coefficients of slope `j` in every stage.
     pub(crate) columns: [[f64; 8]; 8],
-    /// The same in the order of registers.
+    /// The same coefficients in the order of registers.
     pub(super) square: Square,
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
-    /// The same of the five highest, the highest first; zeros where there are none.
+    /// The weights for the five highest Legendre coefficients, the highest first; zeros if there are fewer.
     pub(super) tail: [[f64; 8]; 5],
-    /// How many nodes there are.
+    /// The number of nodes.
     pub(crate) stages: usize,
     between: OnceLock<Between>,
     /// The matrices that continue the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the
@@ -25,10 +25,10 @@ pub(crate) struct GaussRule {
     continued: [OnceLock<[Square; (SHORTER + LONGER + 1) as usize]>; 8],
 }
 
-/// Lengths of steps are powers of the fourth root of two. The next step is longer by so many quarter octaves at most: the iteration of a
-/// much longer one may not converge, and is lost.
+/// Lengths of steps are powers of the fourth root of two. The next step is longer by at most this number of quarter octaves: the iteration
+/// of a much longer step may not converge, and is lost.
 pub(super) const LONGER: i32 = 2;
-/// The next step is shorter by so many quarter octaves at most.
+/// The next step is shorter by at most this number of quarter octaves.
 pub(super) const SHORTER: i32 = 8;
 
 impl GaussRule {
@@ -63,7 +63,7 @@ impl GaussRule {
         }
     }
 
-    /// What tells the error of a step at other points than its stages.
+    /// The points between the stages, at which the error of a step shows.
     pub(super) fn between(&self) -> &Between {
         self.between.get_or_init(|| Between::of(&self.nodes[..self.stages]))
     }

@@ -1,11 +1,11 @@
 use lagrangian::linear::{larger, largest};
 use nalgebra::{DMatrix, DVector};
 
-/// So many of the last iterations are remembered.
+/// Number of last iterations that are remembered.
 const MOST: usize = 16;
 
-/// What the last iterations of `x <- g(x)` show of its derivatives: Anderson's acceleration, by which also an iteration converges that is
-/// pushed away from its solution in a few directions.
+/// The derivatives of `x <- g(x)` as far as its last iterations show them: Anderson's acceleration, by which even an iteration converges
+/// that is pushed away from its solution in a few directions.
 ///
 /// (Walker and Ni 2011, SIAM J. Numer. Anal. 49, 1715-1735.)
 #[derive(Debug, Default)]
@@ -30,7 +30,7 @@ impl Secants {
             self.images.push(less(image, from));
         }
         self.last = Some([change.clone(), image.to_vec()]);
-        // What is small beside the others is not resolved at their expense.
+        // Small numbers are not resolved at the expense of large ones.
         const SMALL: f64 = 1e-6;
         let all = largest(image);
         let size = |k: usize| image.iter().skip(k).step_by(period).fold(SMALL * all, |most, x| larger(most, *x));

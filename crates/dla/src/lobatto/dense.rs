@@ -26,7 +26,7 @@ fn flat_mut<const N: usize, const S: usize>(row: &mut StagesRow<N, S>) -> &mut [
 }
 
 impl<const N: usize, const M: usize, const S: usize> Dense<N, M, S> {
-    /// How many equations there are.
+    /// The number of equations.
     pub(super) const SIZE: usize = {
         assert!(M <= N, "more constraints than coordinates");
         S * N + (S - 1) * M
@@ -38,13 +38,13 @@ impl<const N: usize, const M: usize, const S: usize> Dense<N, M, S> {
         Self { rows: [[[[[[0.0; N]; 2]; S]; N]; 2]; S], right: [[[0.0; N]; 2]; S] }
     }
 
-    /// Where the velocity `i` of a stage stands, and its equation.
+    /// The index of velocity `i` of a stage, and of its equation.
     #[inline]
     pub(super) fn velocity(stage: usize, i: usize) -> usize {
         stage * N + i
     }
 
-    /// Where the multiplier `k` of a stage stands, not that of the last.
+    /// The index of multiplier `k` of a stage; the last stage has none.
     #[inline]
     pub(super) fn multiplier(stage: usize, k: usize) -> usize {
         S * N + stage * M + k

@@ -41,17 +41,17 @@ pub use tables::LobattoTables;
 /// trapezoidal [`Dla`](crate::Dla). (Jay 2003, BIT 43, 93-106; the book, (4.3) to
 /// (4.5).)
 ///
-/// Of a constraint on positions the stages meet the function itself, `g(Q_i) = 0` for `i = 2 .. S`, of which the equations
-/// above are the rates; the last stage is the node (Jay 1996, SIAM J. Numer. Anal. 33, 368-387).
+/// The stages meet a constraint on positions itself, `g(Q_i) = 0` for `i = 2 .. S`, in place of its rate in the equations above; the last
+/// stage is the node (Jay 1996, SIAM J. Numer. Anal. 33, 368-387).
 ///
-/// All stages are solved for together by Newton's method with the exact Jacobian, on the stack. The equations of a long step
-/// may have several solutions. One is accepted where Newton's method contracts to it from its first correction, not far from
-/// where it began, while the constraint turns by less than a radian; else it is followed from a step of length zero in parts
-/// for which that holds.
+/// All stages are solved for together by Newton's method with the exact Jacobian, on the stack. The equations of a long step may have
+/// several solutions. A solution is accepted if Newton's method contracts to it from its first correction, ends not far from its start, and
+/// the constraint turns by less than a radian. Otherwise the solution is followed from a step of length zero, in parts that meet these
+/// conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobatto<const S: usize> {
     tables: LobattoTables<S>,
-    /// What does work that is to be reported.
+    /// The sources whose work is reported.
     sources: PowerSources,
     /// The solver.
     pub newton: Newton,
@@ -73,9 +73,8 @@ impl<const S: usize> Lobatto<S> {
         Self { tables: LobattoTables::new(), sources: PowerSources::NONE, newton: Newton::default() }
     }
 
-    /// The stages to which Newton's method converges from `v`, and the number of iterations; and whether they are the solution near the
-    /// start: the iteration contracted, and started within `part` of its end, or the two differ by the round-off of the place or of
-    /// the equations.
+    /// Runs Newton's method from `v`; returns the number of iterations, and whether the stages are the solution near the start: the
+    /// iteration contracted, and started within `part` of its end, or the two differ by the round-off of the place or of the equations.
     #[inline(always)]
     fn found_near<const N: usize, const M: usize>(
         &self,
@@ -109,7 +108,7 @@ impl<const S: usize> Lobatto<S> {
 }
 
 impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S> {
-    /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
+    /// The report has the impulses of all stages, each shared between the two ends as a lever would.
     #[inline]
     fn step(
         &mut self,
@@ -131,7 +130,7 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
     }
 }
 
-/// The error of a step, with the mass matrix named where it is singular or nearly so: the momenta of the stages, one fewer than their
+/// The error of a step. It names the mass matrix if that is singular or nearly so: the momenta of the stages, one fewer than their
 /// velocities, then leave a velocity open.
 #[cold]
 #[inline(never)]
@@ -164,7 +163,7 @@ impl<const S: usize> Lobatto<S> {
         branch::tells_turn(system, (t0, h), &q0, &v0)?;
         let p0 = system.momentum(t0, &q0, &v0);
 
-        // Start from uniform acceleration, where the equations of motion give one.
+        // Start from uniform acceleration, if the equations of motion give one.
         let (mut v, mut impulse) = ([v0; S], [0.0; M]);
         if let Ok(motion) = system.motion(t0, &q0, &v0) {
             v = mapped(c, |c| from_fn(|i| v0[i] + c * h * motion.acceleration[i]));

@@ -14,7 +14,7 @@ pub struct StagePoint<const N: usize, const M: usize> {
     pub impulse: [f64; M],
 }
 
-/// What the equations of a step need at one stage, with all first derivatives.
+/// The terms of the equations of a step at one stage, with all first derivatives.
 #[derive(Debug, Clone, Copy)]
 pub struct LinearisedStage<const N: usize, const M: usize> {
     /// `p = L_v`.

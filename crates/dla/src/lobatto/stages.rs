@@ -16,7 +16,7 @@ pub(super) struct LobattoStages<'a, const N: usize, const M: usize, const S: usi
     pub(super) h: f64,
     pub(super) start: &'a State<N>,
     pub(super) p0: [f64; N],
-    /// `h Lambda` of every stage; that of the last stays zero.
+    /// `h Lambda` of every stage; zero for the last stage.
     pub(super) impulses: [[f64; M]; S],
     /// The impulses before the last correction.
     pub(super) before: [[f64; M]; S],
@@ -43,7 +43,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         })
     }
 
-    /// By how much the step turns the constraint (rad).
+    /// The angle by which the step turns the constraint (rad).
     #[inline]
     pub(super) fn turn(&self, v: &[[f64; N]; S]) -> f64 {
         let increment = self.increment(&self.tables.b, 1.0, v);
@@ -117,7 +117,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         most_roundings(momenta.chain(rows))
     }
 
-    /// Why the velocities `v` of the stages, which are not found from the velocity `v0`, are refused.
+    /// The error that refuses the velocities `v` of the stages, which are not found from the velocity `v0`.
     #[cold]
     #[inline(never)]
     pub(super) fn unfollowed(&self, v: &[[f64; N]; S], v0: [f64; N]) -> StepError {

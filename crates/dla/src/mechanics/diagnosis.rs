@@ -1,7 +1,7 @@
 use crate::{NotANumber, not_a_number};
 use lagrangian::{AdmissibleBasis, Dependence, Dual, RowSpace, Rows, Scalar, System, mapped};
 
-/// What is asked of a system where a step fails, or before the first one.
+/// The questions that a system answers after a step has failed, or before the first one.
 pub trait Diagnosis<const N: usize, const M: usize> {
     /// The first function that is not finite at a state, or has no finite derivative there.
     fn not_a_number(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<NotANumber>;
@@ -9,7 +9,7 @@ pub trait Diagnosis<const N: usize, const M: usize> {
     /// The span of the rows of the constraint at a state.
     fn row_space(&self, t: f64, q: &[f64; N], v: &[f64; N], tolerance: f64) -> RowSpace<N, M>;
 
-    /// The rows that imply the others, where these depend on them everywhere nearby and agree.
+    /// Rows that imply all rows, if the remaining ones depend on them everywhere nearby and agree; `None` otherwise.
     fn redundant_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Rows>;
 
     /// Whether the rank of the rows is the same nearby.
@@ -55,11 +55,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Diagnosis<N, M> for Sys 
         let t = Dual { re: t, eps: [1.0] };
         let (q, v) = (mapped(q, Dual::fixed), mapped(v, Dual::fixed));
         let (a, b) = System::constraint(self, t, &q);
-        // What is not a number fails later, and is named there.
+        // Numbers that are not finite fail later, and are named there.
         let mut changes = System::lagrangian(self, t, &q, &v).eps[0].abs() > 0.0;
         let mut see = |x: &Dual<f64, 1>| changes |= x.eps[0].abs() > 0.0;
         let basis = self.admissible_basis(t, &q);
-        // Loops, where iterators would be a dozen functions more for each system.
+        // Loops: iterators would be a dozen functions more for each system.
         for row in a.iter().chain(basis.as_ref().map_or(&[][..], AdmissibleBasis::vectors)) {
             for x in row {
                 see(x);

@@ -1,4 +1,4 @@
-//! What a method asks of a system.
+//! The questions that a method asks of a system.
 
 mod automatic;
 mod diagnosis;
@@ -23,7 +23,7 @@ pub struct Slopes<const N: usize> {
     pub l_q: [f64; N],
     /// `L_v`, the momenta.
     pub l_v: [f64; N],
-    /// `F`, where there are forces.
+    /// `F`; `None` if there are no forces.
     pub force: Option<[f64; N]>,
 }
 
@@ -40,7 +40,7 @@ pub struct SecondSlopes<const N: usize> {
     pub l_v: [f64; N],
     /// `L_vv`, the mass matrix.
     pub l_vv: [[f64; N]; N],
-    /// The forces with their derivatives in the coordinates, and with those in the velocities.
+    /// The forces with their derivatives in the coordinates, and with their derivatives in the velocities.
     pub force: Option<[[Dual<f64, N>; N]; 2]>,
 }
 
@@ -79,16 +79,16 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// mixed second derivatives: what a node of a quadrature rule adds to `D1 L_d`, `D2 L_d` and `D1 D2 L_d`.
     fn at_node(&self, t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N>;
 
-    /// The generalised forces; none where there are none.
+    /// The generalised forces; `None` if there are none.
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
 
-    /// How smooth its functions are.
+    /// How smooth the functions of the system are.
     fn smoothness(&self) -> Smoothness;
 
-    /// What may do work on it.
+    /// The sources that may do work on the system.
     fn power_sources(&self) -> PowerSources;
 
-    /// The power of the forces (W); none where there are none.
+    /// The power of the forces (W); `None` if there are no forces.
     fn force_power(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;
 
     /// The power `-dL/dt` at which explicit time feeds the energy (W).
@@ -106,7 +106,7 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// The residual of every constraint, `A v + b`, or `phi` of one that is not affine.
     fn residual(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; M];
 
-    /// The same with its derivatives along `(dq, dv) = (in_q, 1) e_j`.
+    /// The residuals with their derivatives along `(dq, dv) = (in_q, 1) e_j`.
     fn residual_along(&self, t: f64, q: &[f64; N], v: &[f64; N], in_q: f64) -> [Dual<f64, N>; M];
 
     /// The rows along which the constraints act at a velocity: `A`, or `phi_v`.
@@ -136,35 +136,35 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// Whether positions are constrained.
     fn constrains_positions(&self, t: f64, q: &[f64; N]) -> bool;
 
-    /// The functions of the constraints on positions; none where there are none.
+    /// The functions of the constraints on positions; `None` if there are none.
     fn positions(&self, t: f64, q: &[f64; N]) -> Option<[Option<f64>; M]>;
 
-    /// What the constraints on positions miss, with their gradients, rounding being zero; none where there are none.
+    /// The misses of the constraints on positions with their gradients, zero within rounding; `None` if there are no such constraints.
     fn position_misses(&self, t: f64, q: &[f64; N]) -> Option<[Option<Dual<f64, N>>; M]>;
 
     /// Adds `sum_k factors[k] d^2 g_k / dq dq` of the constraints on positions to a matrix.
     fn add_position_curvature(&self, t: f64, q: &[f64; N], factors: &[f64; M], matrix: &mut [[f64; N]; N]);
 
-    /// The basis of admissible velocities, where there is one.
+    /// The basis of admissible velocities; `None` if there is none.
     fn basis(&self, t: f64, q: &[f64; N]) -> Option<AdmissibleBasis<f64, N, M>>;
 
-    /// Shows the system with its basis for the neighbourhood of a configuration, and the number of that basis, where its basis holds near a
-    /// configuration only: as [`System::near`](lagrangian::System::near), which says what `basis` is. Whether it does.
+    /// Shows the system with its basis for the neighbourhood of a configuration, and the number of that basis, if bases of the system hold
+    /// near a configuration only; [`System::near`](lagrangian::System::near) explains `basis`. Returns whether they do.
     fn near(&self, t: f64, q: &[f64; N], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanics<N, M>)) -> bool;
 
-    /// The rows of linear constraints with the basis; none where the system gives none, or where `b` is not zero.
+    /// The rows of linear constraints with the basis; `None` if the system gives no basis, or if `b` is not zero.
     fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
 
     /// Accelerations and multipliers of the continuous system.
     ///
     /// # Errors
-    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    /// [`MotionError`] if the mass matrix or the constraint is degenerate.
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError>;
 
     /// The velocity `W xi + v_b` of quasi-velocities.
     ///
     /// # Errors
-    /// [`ReducedError`] where there is no basis, or a degenerate one.
+    /// [`ReducedError`] if there is no basis, or a degenerate one.
     fn velocity_of(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<[f64; N], ReducedError>;
 
     /// The quasi-velocities of a velocity.
@@ -176,13 +176,13 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// The reduced equations.
     ///
     /// # Errors
-    /// [`ReducedError`] where there is no basis, or where equations are degenerate.
+    /// [`ReducedError`] if there is no basis, or if equations are degenerate.
     fn reduced_slope(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<ReducedSlope<N>, ReducedError>;
 
     /// The inverse of the mass matrix on the distribution.
     ///
     /// # Errors
-    /// [`Singular`](lagrangian::linear::Singular) where the Lagrangian does not determine the quasi-velocities.
+    /// [`Singular`](lagrangian::linear::Singular) if the Lagrangian does not determine the quasi-velocities.
     fn inverse_reduced_mass(
         &self,
         t: f64,
@@ -191,16 +191,16 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
         basis: &AdmissibleBasis<f64, N, M>,
     ) -> Result<[[f64; N]; N], lagrangian::linear::Singular>;
 
-    /// The bracket of the dual of the distribution at eight points; none without a basis.
+    /// The bracket of the dual of the distribution at eight points; `None` without a basis.
     fn bracket(&self, t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<Bracket<Lanes, N, M>>;
 
-    /// The slope of the energy at eight points; none without a basis.
+    /// The slope of the energy at eight points; `None` without a basis.
     fn energy_slope(&self, t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<EnergySlope<Lanes, N>>;
 
     /// The forces at eight points.
     fn force_at_eight(&self, t: Lanes, q: &[Lanes; N], v: &[Lanes; N]) -> Option<[Lanes; N]>;
 
-    /// The stages of a collocation, all at once in the vector registers of the machine; none where it has none.
+    /// Computes the stages of a collocation all at once in the vector registers of the machine; `None` if it has no such registers.
     fn collocate(&self, stages: Collocation<'_, N>) -> Option<CollocationOutcome<N>>;
 }
 

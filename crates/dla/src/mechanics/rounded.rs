@@ -3,7 +3,7 @@ use lagrangian::{
     constraint_residual, reduced_rounding, velocity_slope,
 };
 
-/// The functions of a system with bounds on the rounding of their terms, as a convergence test asks for them where corrections stall.
+/// The functions of a system with bounds on the rounding of their terms, for convergence tests of corrections that stall.
 pub trait RoundedMechanics<const N: usize, const M: usize> {
     /// `L_v`.
     fn momentum_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N];
@@ -23,16 +23,16 @@ pub trait RoundedMechanics<const N: usize, const M: usize> {
     /// The functions of the constraints on positions.
     fn positions_rounded(&self, t: Rounded, q: &[Rounded; N]) -> Option<[Option<Rounded>; M]>;
 
-    /// What rounding does to the equations of motion.
+    /// The effect of rounding on the equations of motion.
     ///
     /// # Errors
-    /// [`MotionError`] where they are degenerate.
+    /// [`MotionError`] if they are degenerate.
     fn motion_rounding(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<MotionRounding<N>, MotionError>;
 
-    /// What rounding does to the quasi-momenta and to their rates; none without a basis.
+    /// The effect of rounding on the quasi-momenta and their rates; `None` without a basis.
     fn bracket_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Option<[[f64; N]; 2]>;
 
-    /// What rounding does to the reduced equations along a step; none where there are none.
+    /// The effect of rounding on the reduced equations along a step; `None` if there are no reduced equations.
     fn reduced_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N], h: f64) -> Option<[[f64; N]; 2]>;
 }
 

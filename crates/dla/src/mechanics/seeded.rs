@@ -2,7 +2,7 @@ use super::Mechanics;
 use crate::PiecewiseMechanics;
 use lagrangian::{Gradients, Reduced, Seeded, SeededMember, System, Unparametrised, velocity_of};
 
-/// What is asked of a system where a motion is differentiated: the same answers with derivatives in eight directions.
+/// The questions about a system whose motion is differentiated: the same answers with derivatives in eight directions.
 ///
 /// Every [`System`] is one. The trait is apart from [`Mechanics`], so that a system whose motions are not differentiated costs no such
 /// code.
@@ -19,10 +19,10 @@ pub trait SeededMechanics<const N: usize, const M: usize>: Mechanics<N, M> {
         then: &mut dyn FnMut(u64, &dyn SeededMechanics<N, M>),
     ) -> bool;
 
-    /// The velocity `W xi + v_b` of quasi-velocities; none where there is no basis.
+    /// The velocity `W xi + v_b` of quasi-velocities; `None` if there is no basis.
     fn velocity_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
 
-    /// The accelerations of the quasi-velocities, where they are known by hand.
+    /// The accelerations of the quasi-velocities; `None` if they are not known by hand.
     fn reduced_motion_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
 }
 

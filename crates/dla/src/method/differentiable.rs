@@ -5,7 +5,7 @@ use crate::{Differentiable, Dla, Lobatto, Rk4, Rk4Reduced, SensitivityError};
 /// Whether the steps of a method have derivatives.
 ///
 /// # Errors
-/// [`SensitivityError::Unsupported`] with the reason, where they have not.
+/// [`SensitivityError::Unsupported`] with the reason, if they have none.
 pub fn has_derivatives(method: &Method) -> Result<(), SensitivityError> {
     differentiable::<3, 1>(method).map(drop)
 }
@@ -13,7 +13,7 @@ pub fn has_derivatives(method: &Method) -> Result<(), SensitivityError> {
 /// Whether they have derivatives on the distribution, for exponents.
 ///
 /// # Errors
-/// [`SensitivityError::Unsupported`] with the reason, where they have not.
+/// [`SensitivityError::Unsupported`] with the reason, if they have none.
 pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
     method.info().tangent.map_err(|reason| SensitivityError::Unsupported { reason })?;
     has_derivatives(method)
@@ -24,7 +24,7 @@ pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
 /// Every one is compiled for every shape of system: `lobatto` and `energy` only for small ones.
 ///
 /// # Errors
-/// [`SensitivityError::Unsupported`] with the reason, where the method is not differentiated.
+/// [`SensitivityError::Unsupported`] with the reason, if the method is not differentiated.
 #[inline(never)]
 pub(crate) fn differentiable<const N: usize, const M: usize>(
     method: &Method,

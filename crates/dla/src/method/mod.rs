@@ -24,13 +24,13 @@ pub struct Method {
     substeps: Option<Substeps>,
 }
 
-/// A method that there is not.
+/// Why no method can be made.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MethodError {
     /// No method has this name.
     #[error("{}; the methods are {}", unknown(name), names().join(", "))]
     Unknown {
-        /// What was asked for.
+        /// The name asked for.
         name: String,
     },
     /// The weight of `dla-alpha` is not between 0 and 1.
@@ -39,12 +39,12 @@ pub enum MethodError {
     /// The tolerance of an adaptive method is not a positive number.
     #[error("the tolerance must be positive and finite, and is {tolerance}")]
     Tolerance {
-        /// What was given.
+        /// The tolerance given.
         tolerance: f64,
     },
 }
 
-/// What is wrong with a name that no method has.
+/// The error for a name that no method has.
 fn unknown(name: &str) -> String {
     if name.is_empty() { "an empty name is not a method".to_owned() } else { format!("unknown method `{name}`") }
 }
@@ -54,14 +54,14 @@ fn names() -> Vec<&'static str> {
 }
 
 impl Method {
-    /// The tolerance of the [adaptive](MethodKind::is_adaptive) methods where none is given, relative and absolute: an error of `1e-12 (1 + |y|)`
-    /// in every step of a component `y`.
+    /// The default tolerance of the [adaptive](MethodKind::is_adaptive) methods, relative and absolute: an error of `1e-12 (1 + |y|)` in
+    /// every step of a component `y`.
     pub const TOLERANCE: f64 = 1e-12;
 
-    /// The method of that name; `alpha` is the weight of `dla-alpha`, `1/2` where none is given.
+    /// The method `name`; `alpha` is the weight of `dla-alpha`, `1/2` by default.
     ///
     /// # Errors
-    /// [`MethodError`] where the name is unknown, or the weight not between 0 and 1.
+    /// [`MethodError`] if the name is unknown, or the weight not between 0 and 1.
     pub fn named(name: &str, alpha: Option<f64>) -> Result<Self, MethodError> {
         let found = METHODS.iter().find(|info| info.name == name);
         let mut info = *found.ok_or_else(|| MethodError::Unknown { name: name.to_owned() })?;
@@ -73,8 +73,8 @@ impl Method {
         Ok(Self { info, alpha, tolerance: Self::TOLERANCE, substeps: None })
     }
 
-    /// The method of that name with the settings of a run: `alpha` as in [`named`](Self::named), and the tolerance of an adaptive method,
-    /// [`TOLERANCE`](Self::TOLERANCE) where none is given.
+    /// The method `name` with the settings of a run: `alpha` as in [`named`](Self::named), and the tolerance of an adaptive method, by
+    /// default [`TOLERANCE`](Self::TOLERANCE).
     ///
     /// # Errors
     /// [`MethodError`].
@@ -87,13 +87,13 @@ impl Method {
         Self { info: METHODS[0], ..*self }
     }
 
-    /// The same method, none of whose steps is divided.
+    /// The same method without division of its steps.
     #[must_use]
     pub fn undivided(self) -> Self {
         Self { substeps: None, ..self }
     }
 
-    /// The same method with another tolerance, which only [adaptive](MethodKind::is_adaptive) ones read.
+    /// The same method with another tolerance, which only [adaptive](MethodKind::is_adaptive) methods read.
     ///
     /// # Errors
     /// [`MethodError::Tolerance`] unless it is positive and finite.
@@ -105,8 +105,8 @@ impl Method {
         }
     }
 
-    /// The same method for the tolerance that a run is asked for, if any: an adaptive one aims for it in each of its steps; the step of any
-    /// other is to be found by [`recommend`](crate::recommend), and the method stays as it is.
+    /// The same method for the tolerance of a run, if there is one. An adaptive method aims for it in each of its steps. Any other method
+    /// is unchanged; `harness::recommend` finds its step.
     ///
     /// # Errors
     /// As [`with_tolerance`](Self::with_tolerance).
@@ -114,15 +114,15 @@ impl Method {
         tolerance.filter(|_| self.is_adaptive()).map_or(Ok(self), |tolerance| self.with_tolerance(tolerance))
     }
 
-    /// The same method, whose steps are made in parts where it cannot make them whole, or where a whole one does not resolve the
-    /// motion ([`Halved`](crate::Halved)). Runs that are integrated piece by piece heed it, as all do that are measured; each step
-    /// then takes the time of three.
+    /// The same method with division of its steps: a step is made in parts if it fails as a whole, or if the whole step does not resolve
+    /// the motion ([`Halved`](crate::Halved)). All runs that are integrated piece by piece or measured do this; each step then takes the
+    /// time of three.
     #[must_use]
     pub fn with_substeps(self, substeps: Substeps) -> Self {
         Self { substeps: Some(substeps), ..self }
     }
 
-    /// How far its steps may be divided; none where they may not.
+    /// How far its steps may be divided; `None` if they may not be.
     #[must_use]
     pub fn substeps(&self) -> Option<Substeps> {
         self.substeps
@@ -140,13 +140,13 @@ impl Method {
         self.tolerance
     }
 
-    /// Whether it chooses steps of its own.
+    /// Whether the method chooses steps of its own.
     #[must_use]
     pub fn is_adaptive(&self) -> bool {
         self.info.kind.is_adaptive()
     }
 
-    /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.
+    /// The rule of the discrete constraint: the midpoint rule, except for `dla-trapezoid` and `dla-alpha`.
     #[must_use]
     pub fn rule(&self) -> Rule {
         match self.info.kind {

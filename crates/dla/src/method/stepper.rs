@@ -7,8 +7,9 @@ use crate::{
 use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
 
 impl Method {
-    /// The method, to make steps with, for a system that brings integrators of its own: the closed form that it has of `dla` takes the
-    /// place of the general one, also in compositions, and `taylor` is its series. It holds for the smooth piece of a run at the time `t` (s).
+    /// The method, to make steps with, for a system that brings integrators of its own: its closed form of `dla` takes the place of the
+    /// general form, also in compositions, and its series makes the steps of `taylor`. The result holds for the smooth piece of a run at
+    /// the time `t` (s).
     #[must_use]
     pub fn stepper_of<'a, const N: usize, const M: usize>(
         &self,
@@ -25,7 +26,7 @@ impl Method {
         }
     }
 
-    /// The method, to make steps with: the one place where a name becomes a type.
+    /// The method, to make steps with: only here a name becomes a type.
     #[must_use]
     #[inline(never)]
     pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<'static, N, M> {
@@ -52,7 +53,7 @@ impl Method {
     }
 }
 
-/// The composition of that order, of those in the table of methods.
+/// The composition of an order in the table of methods.
 pub(super) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
     match order {
         4 => Composition::suzuki4(step),
@@ -61,7 +62,7 @@ pub(super) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
     }
 }
 
-/// The collocation with so many stages, of those in the table of methods.
+/// The collocation with a number of stages in the table of methods.
 pub(super) fn gauss(stages: usize) -> Gauss {
     match stages {
         2 => Gauss::new::<2>(),
@@ -74,7 +75,7 @@ pub(super) fn gauss(stages: usize) -> Gauss {
     }
 }
 
-/// The energy-preserving method with so many stages, of those in the table of methods.
+/// The energy-preserving method with a number of stages in the table of methods.
 pub(super) fn energy(stages: usize) -> Energy {
     match stages {
         1 => Energy::new::<1>(),

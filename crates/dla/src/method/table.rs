@@ -1,6 +1,6 @@
 use super::MethodKind;
 
-/// What is known of a method: one row of [`METHODS`], from which every list of methods is made.
+/// The properties of a method: one row of [`METHODS`], from which every list of methods is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MethodInfo {
     /// Which one it is.
@@ -9,15 +9,15 @@ pub struct MethodInfo {
     pub name: &'static str,
     /// The order of accuracy.
     pub order: u32,
-    /// What it keeps to round-off.
+    /// The quantities that it keeps to round-off.
     pub keeps: &'static str,
-    /// What it is.
+    /// A description.
     pub summary: &'static str,
     /// Where it comes from.
     pub reference: &'static str,
-    /// Whether it makes steps of trains and other assemblies: [`assembly_method`](crate::assembly_method).
+    /// Whether it makes steps of trains and other assemblies: `harness::assembly_method`.
     pub assemblies: bool,
-    /// Whether its steps are differentiated for exponents ([`lyapunov`](fn@crate::analysis::lyapunov)), or why not.
+    /// Whether its steps are differentiated for exponents (`harness::analysis::lyapunov`), or why not.
     pub tangent: Result<(), &'static str>,
 }
 
@@ -109,7 +109,7 @@ const OWN_STEPS: &str = "the method chooses its steps from the state, so the num
 const OFF_THE_DISTRIBUTION: &str = "the method works in full coordinates and leaves the distribution, on which exponents are defined: take \
         rk4-reduced";
 const NOT_HERE: &str =
-    "the derivatives of this method are in the library (crate::Sensitivity) and not in this program: take gauss8";
+    "the derivatives of this method are in the library (dla::Sensitivity) and not in this program: take gauss8";
 const NO_MAP: &str = "gni carries a multiplier from step to step, so its step is not a map of (q, v)";
 
 /// Every method, in the order in which tables show them.

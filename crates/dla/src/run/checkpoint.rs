@@ -1,9 +1,9 @@
 use std::fmt::Write;
 use thiserror::Error;
 
-/// Everything from which a run goes on as if it had never stopped, to the last bit.
+/// The complete state of a run, from which it goes on as if it had never stopped, to the last bit.
 ///
-/// It names what it belongs to, and holds lists of numbers by name. Its text has every `f64` as its bits:
+/// It names its run, and holds lists of numbers by name. Its text has every `f64` as its bits:
 ///
 /// ```text
 /// noslip checkpoint 4
@@ -25,28 +25,28 @@ pub enum CheckpointError {
     /// The text is not a checkpoint.
     #[error("the file is not a checkpoint, or is damaged: a checkpoint is a text that begins with `{HEADER}`")]
     NotOne,
-    /// It is one of another version of the format.
+    /// The checkpoint has another version of the format.
     #[error("the checkpoint has the format version {found}; this program reads version {VERSION}")]
     Version {
-        /// Its version.
+        /// The version found.
         found: String,
     },
-    /// It is cut or changed.
+    /// The checkpoint is cut or changed.
     #[error("the checkpoint is damaged: its text does not have its checksum")]
     Damaged,
-    /// It belongs to another run.
+    /// The checkpoint belongs to another run.
     #[error(
         "the checkpoint belongs to another run: in the checkpoint, `{what}` is `{found}`; in this run, `{what}` is `{expected}`"
     )]
     Other {
-        /// What differs first.
+        /// The first item that differs.
         what: String,
         /// In the checkpoint.
         found: String,
         /// In the run.
         expected: String,
     },
-    /// It lacks numbers that the run needs.
+    /// The checkpoint lacks numbers that the run needs.
     #[error("the checkpoint lacks the {count} numbers `{name}`, which the run needs")]
     Missing {
         /// Their name.
@@ -60,14 +60,14 @@ const HEADER: &str = "noslip checkpoint";
 const VERSION: &str = "5";
 
 impl Checkpoint {
-    /// A checkpoint of the run that these pairs of a name and a value tell from all others.
+    /// A checkpoint of the run that these pairs of a name and a value identify.
     pub fn of<'a>(identity: impl IntoIterator<Item = (&'a str, String)>) -> Self {
         // One line each.
         let line = |(name, value): (&str, String)| (name.to_owned(), value.escape_debug().to_string());
         Self { identity: identity.into_iter().map(line).collect(), values: Vec::new() }
     }
 
-    /// The same checkpoint, of a run that this pair tells from others too.
+    /// The same checkpoint, with one more pair that identifies its run.
     #[must_use]
     pub fn of_run_with(mut self, name: &str, value: &str) -> Self {
         self.identity.push((name.to_owned(), value.escape_debug().to_string()));
@@ -87,7 +87,7 @@ impl Checkpoint {
     /// The numbers of a name, however many.
     ///
     /// # Errors
-    /// [`CheckpointError::Missing`] where there is no such name.
+    /// [`CheckpointError::Missing`] if there is no such name.
     pub fn list(&self, name: &str) -> Result<Vec<f64>, CheckpointError> {
         Ok(self.words(name, 1)?.iter().map(|bits| f64::from_bits(*bits)).collect())
     }
@@ -95,7 +95,7 @@ impl Checkpoint {
     /// The `L` numbers of a name.
     ///
     /// # Errors
-    /// [`CheckpointError::Missing`] where there is no such name, or not so many.
+    /// [`CheckpointError::Missing`] if there is no such name, or another count of numbers.
     pub fn get<const L: usize>(&self, name: &str) -> Result<[f64; L], CheckpointError> {
         Ok(self.counts(name)?.map(f64::from_bits))
     }
@@ -103,7 +103,7 @@ impl Checkpoint {
     /// The `L` whole numbers of a name.
     ///
     /// # Errors
-    /// [`CheckpointError::Missing`] where there is no such name, or not so many.
+    /// [`CheckpointError::Missing`] if there is no such name, or another count of numbers.
     pub fn counts<const L: usize>(&self, name: &str) -> Result<[u64; L], CheckpointError> {
         let missing = |_| CheckpointError::Missing { name: name.to_owned(), count: L };
         <[u64; L]>::try_from(self.words(name, L)?).map_err(missing)
@@ -161,7 +161,7 @@ impl Checkpoint {
     /// Reads a text of [`to_text`](Self::to_text).
     ///
     /// # Errors
-    /// [`CheckpointError`] where it is none, of another version, or damaged.
+    /// [`CheckpointError`] if the text is no checkpoint, has another version, or is damaged.
     pub fn from_text(text: &str) -> Result<Self, CheckpointError> {
         use CheckpointError::{Damaged, NotOne, Version};
         let (first, _) = text.split_once('\n').ok_or(NotOne)?;

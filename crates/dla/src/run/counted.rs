@@ -22,8 +22,8 @@ impl<const N: usize, const M: usize> Counted<'_, N, M> {
     }
 }
 
-/// Entries that pass on what the system answers: before each, how many evaluations the answer takes, `some` being one where there is
-/// an answer.
+/// Entries that pass on the answers of the system. Before each stands the number of evaluations that the answer takes; `some` is one if
+/// there is an answer.
 macro_rules! counted {
     ($($count:tt $name:ident($($argument:ident: $type:ty),*) $(-> $answer:ty)?;)*) => {
         $(fn $name(&self, $($argument: $type),*) $(-> $answer)? {

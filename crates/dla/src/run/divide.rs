@@ -2,11 +2,11 @@ use lagrangian::Shown;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// How far a step may be divided that cannot be made whole.
+/// Limits on the division of a step that cannot be made whole.
 ///
-/// Its parts are halves, quarters, eighths, .. of it, each as long as it can be, on the grid of their own length: so they end
-/// where the step does, and a part becomes twice as long again as soon as that grid is met. What is done depends on the
-/// step alone, never on steps before it.
+/// The parts are halves, quarters, eighths, .. of the step, each as long as possible, on the grid of their own length: so the last part
+/// ends with the step, and parts become twice as long again as soon as they meet the longer grid. The division depends on the step alone,
+/// never on steps before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Substeps {
     halvings: u32,
@@ -17,40 +17,40 @@ pub struct Substeps {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{source}; {tried} parts of the step were tried, the last of {} s from t = {} s", Shown(*part), Shown(*time))]
 pub struct Undivided<E> {
-    /// The parts that were tried, those that held among them.
+    /// The number of parts that were tried, including the parts that succeeded.
     pub tried: u64,
-    /// Where the last began (s).
+    /// The beginning of the last part (s).
     pub time: f64,
-    /// How long it was (s).
+    /// The length of the last part (s).
     pub part: f64,
-    /// Why the last that failed did.
+    /// Why the last failing part failed.
     #[source]
     pub source: E,
 }
 
 impl Default for Substeps {
-    /// As short as parts can be, and 2^22 tries: what needs more of them is not a matter of one step.
+    /// The shortest possible parts, and 2^22 tries: a step that needs more has another cause of failure.
     fn default() -> Self {
         Self::new(53, 1 << 22)
     }
 }
 
 impl Substeps {
-    /// Parts of `2^-halvings` of a step at the least, and so many tries in all. More than 53 halvings count as that, since shorter
-    /// parts are lost in the end of the step.
+    /// Parts of at least `2^-halvings` of a step, and at most `most` tries in all. More than 53 halvings count as 53, since shorter parts
+    /// are lost in the end of the step.
     #[must_use]
     pub fn new(halvings: u32, most: u64) -> Self {
         Self { halvings: halvings.min(53), most }
     }
 
-    /// Makes the step from time `t` to `t + h` (s) in parts, after it has failed as a whole; how many there were, or `Break`
-    /// where `make` gave that.
+    /// Makes the step from time `t` to `t + h` (s) in parts, after it has failed as a whole; returns their number, or `Break` if `make`
+    /// gave that.
     ///
-    /// `make` is given the start and the length of a part (s) and which part of the step is done after it. Where it fails it
-    /// must leave everything as it was. `mended` says whether a shorter part may hold after such a failure.
+    /// `make` is given the start and the length of a part (s), and the fraction of the step that is done after it. If it fails it must
+    /// leave everything as it was. `mended` says whether a shorter part may hold after such a failure.
     ///
     /// # Errors
-    /// [`Undivided`] with the last failure, where no shorter part mends it, or no more may be tried.
+    /// [`Undivided`] with the last failure, if no shorter part mends it, or no more may be tried.
     pub fn divide<E>(
         &self,
         (t, h): (f64, f64),

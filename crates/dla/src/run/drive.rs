@@ -6,14 +6,14 @@ use lagrangian::Shown;
 use std::ops::{ControlFlow, Range};
 use thiserror::Error;
 
-/// When the steps of a run are made: node `k` is at `t0 + k h`, so that no rounding error adds up in the time.
+/// The times of the steps of a run: node `k` is at `t0 + k h`, so that no rounding error adds up in the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
     /// Time of the first node (s).
     pub t0: f64,
     /// Step `h` (s); negative runs backward.
     pub step: f64,
-    /// How many steps.
+    /// Number of steps.
     pub steps: u64,
 }
 
@@ -58,7 +58,7 @@ impl View<'_> {
         self.system.largest_residual(self.t, self.state.q(), self.state.v())
     }
 
-    /// The largest of the functions of the constraints on positions; none where there are none.
+    /// The largest of the functions of the constraints on positions; `None` if there are none.
     #[must_use]
     pub fn position(&self) -> Option<f64> {
         self.system.largest_position(self.t, self.state)
@@ -72,20 +72,20 @@ pub trait Observer {
     /// Sees the first node.
     fn start(&mut self, node: &View<'_>);
 
-    /// Sees a node again where the next smooth piece of a run begins: the velocity may have jumped.
+    /// Sees a node again at the beginning of the next smooth piece of a run: the velocity may have jumped.
     #[inline(always)]
     fn resume(&mut self, _node: &View<'_>) {}
 
     /// Sees a node after a step; `Break` ends the run there.
     fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()>;
 
-    /// Sees where each part of a divided step ends, the last at the node that [`step`](Self::step) is shown after it, and that
-    /// node's number; `Break` gives the step up and ends the run at the node before.
+    /// Sees the end of each part of a divided step, with the number of the next node; the last part ends at the node that
+    /// [`step`](Self::step) is shown after it. `Break` gives the step up and ends the run at the node before.
     fn part(&mut self, _end: &View<'_>, _report: &Report) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// Whether it wants the [work](StepReport::work) of steps, which methods measure only for who does.
+    /// Whether it wants the [work](StepReport::work) of steps; methods measure it only on request.
     fn measures_work(&self) -> bool {
         false
     }
@@ -143,7 +143,7 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// Looks where there is something to look with.
+/// An observer that may be absent.
 impl<O: Observer> Observer for Option<O> {
     fn start(&mut self, node: &View<'_>) {
         self.iter_mut().for_each(|observer| observer.start(node));
@@ -196,22 +196,22 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
 }
 
-/// A run that ended early. Its observers keep what they saw, the state is that of the last good node.
+/// A run that ended early. Its observers keep what they saw; the state is at the last good node.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("step {step}, from t = {} s: {source}", Shown(*time))]
 pub struct RunError {
     /// The number of the failed step, from 1.
     pub step: u64,
-    /// The time it began at, which is how far the trajectory is valid (s).
+    /// The time at which it began, up to which the trajectory is valid (s).
     pub time: f64,
-    /// What happened.
+    /// The error of the step.
     #[source]
     pub source: StepError,
-    /// What is known of shorter steps from there.
+    /// The outcome of shorter steps from there.
     pub shorter: Shorter,
 }
 
-/// What is known of steps that are shorter than one that failed.
+/// The outcome of steps that are shorter than one that failed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Shorter {
     /// None was tried.
@@ -224,21 +224,21 @@ pub enum Shorter {
 }
 
 impl RunError {
-    /// A run that failed with its step of that number, from one, which began at that time (s).
+    /// The error of step number `step`, counted from one, which began at the time `time` (s).
     #[must_use]
     pub fn new(step: u64, time: f64, source: StepError) -> Self {
         Self { step, time, source, shorter: Shorter::Untried }
     }
 
-    /// The same with what shorter steps do, where the failure asks for one: those from the last good node are tried. The method is then as
-    /// before.
+    /// The same error with the outcome of shorter steps from the last good node, if the failure asks for a shorter step. The method is then
+    /// as before.
     #[cold]
     #[must_use]
     pub fn with_shorter(self, method: &mut dyn Integrator, (h, state): (f64, &AnyState)) -> Self {
-        /// So much shorter than the failure asks for.
+        /// Lengths that are tried, relative to the length that the failure asks for.
         const PARTS: [f64; 4] = [1.0, 0.25, 1.0 / 32.0, 1.0 / 512.0];
         let asked = match self.source {
-            // The first two know it; steps of a method's own are short already.
+            // The first two know the length; steps of a method's own are short already.
             StepError::Overshoot { .. } | StepError::Turn { .. } | StepError::Tolerance { .. } => None,
             source => source.hint(),
         };
@@ -270,7 +270,7 @@ pub fn drive<const N: usize, const M: usize>(
     drive_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
 }
 
-/// The same for some of the steps, as [`make_steps`].
+/// As [`drive`] for some of the steps, and as [`make_steps`].
 ///
 /// # Errors
 /// As [`drive`].
@@ -296,12 +296,12 @@ pub fn drive_part<const N: usize, const M: usize>(
 pub struct Part {
     /// The number of steps made since the start of the run.
     pub made: u64,
-    /// Whether the observer ended the run, or whoever waits for it ([`Stop`]).
+    /// Whether the observer ended the run, or the caller ([`Stop`]).
     pub stopped: bool,
 }
 
-/// Makes the steps `steps.start + 1 ..= steps.end` of a schedule, as a part of a run: the observer sees the start with the
-/// first part, the end with the last or where the run ends early, and [`Observer::resume`] in between.
+/// Makes the steps `steps.start + 1 ..= steps.end` of a schedule, as a part of a run: the observer sees the start with the first part, the
+/// end with the last part or if the run ends early, and [`Observer::resume`] in between.
 ///
 /// # Errors
 /// [`RunError`] with the step that failed; `state` then is the last good node.

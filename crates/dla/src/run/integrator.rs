@@ -7,7 +7,7 @@ pub trait Integrator {
     /// Moves the state from time `t` to `t + h` (s).
     ///
     /// # Errors
-    /// [`StepError`] where the step has no solution that the method accepts; the state is then unchanged.
+    /// [`StepError`] if the step has no solution that the method accepts; the state is then unchanged.
     fn step(&mut self, t: f64, h: f64, state: &mut AnyState) -> Result<&Report, StepError>;
 
     /// As [`OneStep::memory`].
@@ -35,7 +35,7 @@ pub trait Integrator {
 /// Looks at the end of a step that a method makes of its own, a time (s) and a state; `Break` asks for no more of them.
 pub type SeeOwnStep<'a> = dyn FnMut(f64, &AnyState) -> ControlFlow<()> + 'a;
 
-/// What a step did besides moving the state.
+/// The report of a step, besides the state.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Impulses of the constraints at the two ends of the step (N s), as in [`StepReport::impulses`].
@@ -72,7 +72,7 @@ impl Report {
         multipliers.iter_mut().zip(both).for_each(|(lambda, (before, after))| *lambda = (before + after) / h);
     }
 
-    /// The same as a list.
+    /// The constraint forces as a list.
     #[must_use]
     pub fn multipliers(&self, h: f64) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.impulses[0].len()];

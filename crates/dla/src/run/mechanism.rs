@@ -24,10 +24,10 @@ pub trait Mechanism {
     /// The state that [`AnyState::save`] wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none of so many coordinates.
+    /// [`CheckpointError`] if the checkpoint has no state with this number of coordinates.
     fn load_state(&self, checkpoint: &Checkpoint) -> Result<AnyState, CheckpointError>;
 
-    /// The method, made for this system: its own closed form or series where it has one.
+    /// The method, made for this system: its own closed form or series if it has one.
     fn integrator(&self, method: &Method) -> Box<dyn Integrator + '_>;
 
     /// The midpoint discrete Lagrange-d'Alembert map in its general form.
@@ -48,53 +48,53 @@ pub trait Mechanism {
     /// The residual of every constraint, `A v + b`, or `phi` of one that is not affine.
     fn residual(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64>;
 
-    /// The largest of these.
+    /// The largest residual of the constraints.
     fn largest_residual(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
-    /// The largest residual of the discrete constraint of a step from `q` with the mean velocity `v`; not a number where it is not known.
+    /// The largest residual of the discrete constraint of a step from `q` with the mean velocity `v`; NaN if it is not known.
     fn largest_step_residual(&self, rules: &Rules, time: (f64, f64), q: &[f64], v: &[f64]) -> f64;
 
-    /// The largest of the functions of the constraints on positions; none where there are none.
+    /// The largest of the functions of the constraints on positions; `None` if there are none.
     fn largest_position(&self, t: f64, state: &AnyState) -> Option<f64>;
 
-    /// What the constraints on positions miss, each with its gradient, rounding being zero.
+    /// The misses of the constraints on positions, each with its gradient; zero within rounding.
     fn position_misses(&self, t: f64, q: &[f64]) -> Vec<(f64, Vec<f64>)>;
 
-    /// Where a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there
-    /// ([`onto_constraint`](crate::onto_constraint())); `time` has the length of the steps from there, too.
+    /// If a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there
+    /// ([`onto_constraint`](crate::onto_constraint())). `time` is the time (s) and the length of the next steps (s).
     ///
     /// # Errors
-    /// [`StepError::Newton`] where the constraints do not determine the velocity.
+    /// [`StepError::Newton`] if the constraints do not determine the velocity.
     fn onto_constraint(&self, time: (f64, f64), state: &mut AnyState) -> Result<(), StepError>;
 
-    /// The error of a step from a state, with what is known of its cause.
+    /// The error of a step from a state, with its cause if that can be named.
     fn explained(&self, time: (f64, f64), state: &AnyState, error: StepError) -> StepError;
 
-    /// What may do work on it.
+    /// The sources that may do work on the system.
     fn power_sources(&self) -> PowerSources;
 
-    /// The work of a step between two nodes, of what these sources may do ([`Work`](crate::Work)).
+    /// The work of a step between two nodes by these sources ([`Work`](crate::Work)).
     fn work_between(&self, sources: PowerSources, from: Place<'_>, to: Place<'_>) -> f64;
 
     /// Accelerations and multipliers of the continuous system.
     ///
     /// # Errors
-    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    /// [`MotionError`] if the mass matrix or the constraint is degenerate.
     fn motion(&self, t: f64, q: &[f64], v: &[f64]) -> Result<[Vec<f64>; 2], MotionError>;
 
     /// The velocity `W xi + v_b` of quasi-velocities.
     ///
     /// # Errors
-    /// [`ReducedError`] where there is no basis, or a degenerate one.
+    /// [`ReducedError`] if there is no basis, or a degenerate one.
     fn velocity_of(&self, t: f64, q: &[f64], xi: &[f64]) -> Result<Vec<f64>, ReducedError>;
 
-    /// The quasi-velocities of a velocity, as many as there are coordinates; those beyond the dimension of the distribution do not count.
+    /// The quasi-velocities of a velocity, as many as there are coordinates; entries beyond the dimension of the distribution do not count.
     ///
     /// # Errors
     /// As [`velocity_of`](Self::velocity_of).
     fn quasi_velocities(&self, t: f64, q: &[f64], v: &[f64]) -> Result<Vec<f64>, ReducedError>;
 
-    /// Those that the last step left, else those of the velocity.
+    /// The quasi-velocities that the last step left, else the quasi-velocities of the velocity.
     ///
     /// # Errors
     /// As [`velocity_of`](Self::velocity_of).
@@ -103,20 +103,20 @@ pub trait Mechanism {
     /// Whether some constraint has a velocity of its own at a place: `b` is not zero.
     fn is_driven(&self, t: f64, q: &[f64]) -> bool;
 
-    /// Shows the system with its basis for the neighbourhood of a configuration, and the number of that basis, where its bases are local
-    /// ([`System::near`](lagrangian::System::near)); whether it does.
+    /// Shows the system with its basis for the neighbourhood of a configuration, and the number of that basis, if its bases are local
+    /// ([`System::near`](lagrangian::System::near)); returns whether they are.
     fn near(&self, t: f64, q: &[f64], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanism)) -> bool;
 
     /// Shows the system with a count of its evaluations.
     fn counted(&self, evaluations: &Cell<u64>, then: &mut dyn FnMut(&dyn Mechanism));
 
-    /// The reduced equations with their derivatives ([`reduced_field`](crate::reduced_field())); none without a basis.
+    /// The reduced equations with their derivatives ([`reduced_field`](crate::reduced_field())); `None` without a basis.
     ///
     /// # Errors
-    /// [`Singular`] where they are degenerate.
+    /// [`Singular`] if the equations are degenerate.
     fn reduced_field(&self, t: f64, q: &[f64], xi: &[f64]) -> Option<Result<ReducedField, Singular>>;
 
-    /// The reduced equations on numbers with derivatives, velocities and accelerations; none where there are none.
+    /// The reduced equations on numbers with derivatives, velocities and accelerations; `None` if there are none.
     fn reduced_flow(&self, t: f64, q: &[Seeded], xi: &[Seeded]) -> Option<[Vec<Seeded>; 2]>;
 
     /// The velocity of quasi-velocities on numbers with derivatives.
@@ -125,13 +125,13 @@ pub trait Mechanism {
     /// Whether the steps of a method on it have derivatives for exponents ([`has_tangents`](crate::has_tangents)).
     ///
     /// # Errors
-    /// [`SensitivityError::Unsupported`] with the reason, where they have not.
+    /// [`SensitivityError::Unsupported`] with the reason, if they have none.
     fn has_derivatives(&self, method: &Method) -> Result<(), SensitivityError>;
 
     /// The derivative of a step of a method, in the `2 n - m` coordinates `(q, xi)`.
     ///
     /// # Errors
-    /// [`SensitivityError`] where the method or the system has none.
+    /// [`SensitivityError`] if the method or the system has none.
     fn step_derivative(
         &self,
         method: &Method,
@@ -141,7 +141,7 @@ pub trait Mechanism {
     ) -> Result<DMatrix<f64>, SensitivityError>;
 }
 
-/// How many coordinates and constraints a system has.
+/// The number of coordinates and constraints of a system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
     /// Coordinates.

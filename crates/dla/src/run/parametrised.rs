@@ -14,11 +14,11 @@ pub trait ParametrisedMechanics<const N: usize, const M: usize, const P: usize> 
 /// A variation of a state and of the parameters of its system, of sizes known at run time; what a list lacks is zero.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AnyTangent {
-    /// Of the configuration.
+    /// The variation of the configuration.
     pub q: Vec<f64>,
-    /// Of the velocity.
+    /// The variation of the velocity.
     pub v: Vec<f64>,
-    /// Of the parameters; it is the same along a run.
+    /// The variation of the parameters; it is the same along a run.
     pub parameters: Vec<f64>,
 }
 
@@ -33,10 +33,10 @@ pub trait ParametrisedMechanism {
     /// The energy (J) at a time and a state on numbers with derivatives.
     fn energy(&self, t: f64, q: &[Seeded], v: &[Seeded], p: &[Seeded]) -> Seeded;
 
-    /// Tangents after a step of a method, made in the basis of that number.
+    /// Tangents after a step of a method, made in the basis number `basis`.
     ///
     /// # Errors
-    /// [`SensitivityError`] where the step has no derivative.
+    /// [`SensitivityError`] if the step has no derivative.
     fn carried(
         &self,
         method: &Method,

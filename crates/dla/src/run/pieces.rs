@@ -32,16 +32,16 @@ pub fn pieces(schedule: &Schedule, mut jumps: Vec<f64>) -> Result<Vec<Range<u64>
     Ok(parts)
 }
 
-/// A smooth piece of a run: which of its steps it has, and their schedule, which numbers nodes from the start of the run.
+/// A smooth piece of a run: its steps, and their schedule, which numbers nodes from the start of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// The steps.
     pub steps: Range<u64>,
-    /// When they are.
+    /// The times of the steps.
     pub schedule: Schedule,
 }
 
-/// Two times so many steps apart, or less, are one.
+/// Two times at most this number of steps apart count as one.
 const SAME: f64 = 1e-9;
 
 /// The times at which the pieces of a run begin and end (s), in the order of the run.
@@ -62,12 +62,12 @@ fn ends(schedule: &Schedule, mut jumps: Vec<f64>) -> Vec<f64> {
     ends
 }
 
-/// How many steps no longer than `longest` a piece of that length needs.
+/// Number of steps no longer than `longest` that a piece of this length needs.
 fn needed(length: f64, longest: f64) -> u64 {
     (length / longest - SAME).ceil().max(1.0) as u64
 }
 
-/// Shares out the steps of a run to pieces of these lengths (s), so that the longest step is as short as possible; none where there are
+/// Shares out the steps of a run to pieces of these lengths (s), so that the longest step is as short as possible; `None` if there are
 /// fewer steps than pieces.
 fn shares(lengths: &[f64], steps: u64) -> Option<Vec<u64>> {
     if steps < lengths.len() as u64 {
@@ -94,13 +94,13 @@ fn shares(lengths: &[f64], steps: u64) -> Option<Vec<u64>> {
     Some(shares)
 }
 
-/// The smooth pieces of a run: where every jump is at a node, all with the schedule of the run; else each with equal steps of its own.
+/// The smooth pieces of a run: if every jump is at a node, all with the schedule of the run; else each with equal steps of its own.
 ///
 /// `jumps` are times inside the run (s), in any order. The steps of the run are then shared out to the pieces so that the longest one is as short
 /// as possible, and every jump and the end of the run are nodes.
 ///
 /// # Errors
-/// [`RunError`] with [`StepError::Jump`] where the run has fewer steps than pieces.
+/// [`RunError`] with [`StepError::Jump`] if the run has fewer steps than pieces.
 pub fn smooth_pieces(schedule: &Schedule, jumps: Vec<f64>) -> Result<Vec<Piece>, RunError> {
     let strict = match pieces(schedule, jumps.clone()) {
         Ok(ranges) => {
@@ -122,7 +122,7 @@ pub fn smooth_pieces(schedule: &Schedule, jumps: Vec<f64>) -> Result<Vec<Piece>,
     Ok(ends.windows(2).zip(shares).map(piece).collect())
 }
 
-/// The schedule of a run with these jumps (s) and steps no longer than `longest` (s): the given one where it has a node at every jump, else
+/// The schedule of a run with these jumps (s) and steps no longer than `longest` (s): the given one if it has a node at every jump, else
 /// one over the same time with as many steps as its pieces need, and their mean step.
 #[must_use]
 pub fn fitted(schedule: &Schedule, longest: f64, jumps: Vec<f64>) -> Schedule {
@@ -164,7 +164,7 @@ impl<Sys: System<N, M> + Piecewise, const N: usize, const M: usize> PiecewiseMec
 /// Makes a run whose forces or constraints may jump, one smooth piece after the other, that has made `from` steps already and is at `state`,
 /// before the impulse of a jump there; returns how many steps were made.
 ///
-/// `make` makes the given steps of the given schedule with the given piece, as [`make_steps`](crate::make_steps) does. Where an imposed
+/// `make` makes the given steps of the given schedule with the given piece, as [`make_steps`](crate::make_steps) does. If an imposed
 /// velocity jumps, the impulse of the constraints changes the velocity before the next piece begins.
 ///
 /// # Errors
@@ -179,7 +179,7 @@ pub fn piece_by_piece(
     let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
     let mut made = from;
     for Piece { steps, schedule } in smooth_pieces(schedule, system.jump_times(begin.min(end), begin.max(end)))? {
-        // Of a run that is over, its last piece is shown without a step: whoever looks on sees the end.
+        // The last piece of a finished run is shown without a step, so that observers see the end.
         if from > 0 && steps.end <= from.min(schedule.steps.saturating_sub(1)) {
             continue;
         }
@@ -200,11 +200,11 @@ pub fn piece_by_piece(
     Ok(made)
 }
 
-/// Where a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there: the
-/// momentum is projected as at the end of a step, `L_v(q, v) = p + A' mu`, `A v + b = 0`.
+/// If a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there: the momentum is projected as
+/// at the end of a step, `L_v(q, v) = p + A' mu`, `A v + b = 0`.
 ///
 /// # Errors
-/// [`StepError::Newton`] where the constraints do not determine the velocity.
+/// [`StepError::Newton`] if the constraints do not determine the velocity.
 pub fn onto_constraint<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     t: f64,

@@ -7,7 +7,7 @@ use thiserror::Error;
 pub struct Recommendation {
     /// The step (s), a whole part of the duration.
     pub step: f64,
-    /// So many make the duration.
+    /// The number of steps in the duration.
     pub steps: u64,
     /// The error to expect: the largest of a coordinate, in its own units, at eighths of the duration.
     pub estimated_error: f64,
@@ -34,12 +34,12 @@ pub enum RecommendError {
         tolerance: f64,
         /// The smallest error found.
         best: f64,
-        /// With this step (s).
+        /// The step of that error (s).
         step: f64,
-        /// And so many of them.
+        /// The number of such steps in the duration.
         steps: u64,
     },
-    /// Whoever waits has ended the search ([`Stop`](crate::Stop)).
+    /// The caller has ended the search ([`Stop`](crate::Stop)).
     #[error("ended before a step was found")]
     Stopped,
     /// The run fails with the shortest step tried.
@@ -53,8 +53,8 @@ pub enum RecommendError {
     },
 }
 
-/// The times at which trials are compared, as parts of the duration: wherever the nodes are, and several, so that an error
-/// that happens to pass through zero at one of them hides nothing.
+/// Number of times at which trials are compared, evenly over the duration and independent of the nodes: an error that happens to pass
+/// through zero at one of them hides nothing.
 const TIMES: usize = 8;
 /// The recommended step aims at this part of the tolerance, and is content with anything between the second and it.
 const AIM: (f64, f64) = (0.5, 0.25);
@@ -64,22 +64,22 @@ const REFERENCE: f64 = 0.05;
 const REFINEMENTS: u32 = 12;
 /// Changes below this part of the largest coordinate may be rounding.
 const ROUNDING: f64 = 1e-7;
-/// No trial has more steps.
+/// Maximum number of steps of a trial.
 const MOST: u64 = 1 << 26;
-/// Nor so many, unless shorter steps are seen to help.
+/// Maximum number of steps of a trial, unless shorter steps are seen to help.
 const UNSEEN: u64 = 1 << 22;
-/// Runs of more steps than this say when a motion leaves the range of numbers, and what is within reach of numbers without the digits.
+/// Runs with more steps than this show when a motion leaves the range of numbers, and the best error of numbers that lack digits for the
+/// tolerance.
 const FINE: u64 = 1 << 16;
 
 /// The longest constant step with which a motion from time zero reaches its tolerance, the largest error of a coordinate in its own units,
-/// found by trial: `make` makes a run by a schedule, and gives the configurations, angles with their turns, at the times, which end with the
-/// end of the run.
+/// found by trial: `make` makes a run by a schedule, and returns the configurations, angles with their turns, at the given times; the last
+/// time is the end of the run.
 ///
-/// A step that changes along a run would destroy the symmetry of a symmetric method; a constant one keeps it. The number of
-/// steps is doubled until the change, extrapolated by the ratio of two changes (Richardson), no longer moves by more than a
-/// part of the tolerance: that is the reference. The order of the method is what that ratio shows. Then the number of
-/// steps is refined against it, to half of the tolerance. It costs some four times the steps of what it recommends, and
-/// more where the tolerance is loose.
+/// A step that changes along a run would destroy the symmetry of a symmetric method; a constant one keeps it. The number of steps is
+/// doubled until the change, extrapolated by the ratio of two changes (Richardson), no longer moves by more than a part of the tolerance:
+/// that is the reference. That ratio shows the order of the method. Then the number of steps is refined against the reference, to half of
+/// the tolerance. The search costs some four times the steps of its result, and more if the tolerance is loose.
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
@@ -93,7 +93,7 @@ pub fn recommend_by_trial(
     }
     let mut trial = |steps: u64| -> Result<Sampled, RunError> {
         let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
-        // The last is that of the last node, to the bit.
+        // The last time is the time of the last node, to the bit.
         let end = schedule.time(steps);
         let times: [f64; TIMES] = lagrangian::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
         let found = make(&schedule, &times)?;
@@ -176,7 +176,7 @@ fn reference(
                 }
             }
             Err(RunError { source: StepError::Stopped, .. }) => return Err(RecommendError::Stopped),
-            // What was found with longer steps, if anything was, cannot be compared.
+            // Results with longer steps cannot be compared.
             Err(error) => {
                 failure = Some(error);
                 trials.clear();
@@ -216,7 +216,7 @@ fn refined(
     let (aim, enough) = (AIM.0 * tolerance, AIM.1 * tolerance);
     let mut few = (0, f64::INFINITY);
     let mut many = None;
-    // All before the last that is not good enough count as that.
+    // All trials before the last one that is not good enough count as not good enough.
     for (steps, found) in trials {
         let error = distance(found, reference);
         if error > aim {
@@ -265,8 +265,8 @@ fn refined(
     Ok(Recommendation { step: duration / steps as f64, steps, estimated_error })
 }
 
-/// A number of steps between two, where a power law through their errors has the error `aim`; the middle of the powers
-/// where they have no law.
+/// A number of steps between two, for which a power law through their errors has the error `aim`; the middle of the powers if they have no
+/// law.
 fn between(few: (u64, f64), many: (u64, f64), aim: f64) -> u64 {
     let (low, high) = ((few.0.max(1) as f64).ln(), (many.0 as f64).ln());
     let (top, bottom) = (few.1.ln(), many.1.max(f64::MIN_POSITIVE).ln());

@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 
 /// The observer that takes the state at given times, wherever the nodes are.
 ///
-/// Between nodes the state is that of a shorter step of the same method from the node before, made with copies: it has the
-/// order of the method and holds the constraint as a node does, and the nodes of the run are not touched. The velocity is
-/// the derivative of the position to that order. At a node it is the node; where a velocity jumps there, the one before.
-/// A method that remembers more than the state is repeated as in its first step. [`Hermite`](crate::Hermite) is cheaper.
+/// Between nodes the state comes from a shorter step of the same method from the node before, made with copies: it has the order of the
+/// method and holds the constraint as a node does, and the nodes of the run are not touched. The velocity is the derivative of the position
+/// to that order. At a node it is the node; if a velocity jumps there, the node before the jump. A method that remembers more than the
+/// state repeats the step as its first one. [`Hermite`](crate::Hermite) is cheaper.
 #[derive(Debug, Clone)]
 pub struct Samples<'a> {
     method: &'a Method,
@@ -23,8 +23,8 @@ impl<'a> Samples<'a> {
         Self { method, times, before: None, taken: Vec::with_capacity(times.len()), failure: None }
     }
 
-    /// The states at the first of the times; fewer than those where the run ended early, where the times are not in
-    /// order or begin before the run, or where a step has [failed](Self::failure).
+    /// The states at the first of the times. They are fewer than the times if the run ended early, if the times are not in order or begin
+    /// before the run, or if a step has [failed](Self::failure).
     #[must_use]
     pub fn taken(&self) -> &[AnyState] {
         &self.taken
@@ -50,7 +50,7 @@ impl<'a> Samples<'a> {
             && self.failure.is_none()
         {
             let (since, left) = (forward * (t - t0), forward * (node.t - t));
-            // What is not a number is never reached.
+            // A time that is not a number is never reached.
             if !(since >= 0.0 && left >= 0.0) {
                 return;
             }

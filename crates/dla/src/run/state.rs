@@ -5,10 +5,11 @@ use std::fmt;
 
 /// Configuration and velocity of a system whose size is known at run time.
 ///
-/// It holds what the methods of its system step: of a system of a shape a [`State`]. [`Mechanism::state`](crate::Mechanism::state) makes it.
+/// It holds the state that the methods of its system step; for a system of a shape a [`State`]. [`Mechanism::state`](crate::Mechanism::state)
+/// makes it.
 pub struct AnyState(Box<dyn Stateful>);
 
-/// What an [`AnyState`] may hold.
+/// A state that an [`AnyState`] may hold.
 pub trait Stateful: Any + Send + Sync {
     /// As [`AnyState::q`].
     fn q(&self) -> &[f64];
@@ -24,9 +25,9 @@ pub trait Stateful: Any + Send + Sync {
     fn save(&self, checkpoint: &mut Checkpoint);
     /// As [`AnyState::reversed`].
     fn reversed(&self) -> AnyState;
-    /// The same once more.
+    /// A copy.
     fn cloned(&self) -> AnyState;
-    /// Whether it became the other one, of the same kind.
+    /// Copies the other state if it is of the same kind; returns whether it is.
     fn becomes(&mut self, other: &dyn Any) -> bool;
 }
 
@@ -102,7 +103,7 @@ impl AnyState {
         q
     }
 
-    /// Writes the same into a slice of its length.
+    /// Writes [`unwrapped`](Self::unwrapped) into a slice of its length.
     pub fn unwrap_into(&self, q: &mut [f64]) {
         self.0.unwrap_into(q);
     }
@@ -112,7 +113,7 @@ impl AnyState {
         self.0.move_into(&*before.0, moved);
     }
 
-    /// The same as a list.
+    /// As [`move_into`](Self::move_into), as a list.
     #[must_use]
     pub fn moved_since(&self, before: &Self) -> Vec<f64> {
         let mut moved = vec![0.0; self.q().len()];
@@ -131,7 +132,7 @@ impl AnyState {
         self.0.save(checkpoint);
     }
 
-    /// The state of a shape; none where it is of another one.
+    /// The state as one of `N` coordinates; `None` if it has another shape.
     #[must_use]
     #[inline]
     pub fn typed<const N: usize>(&self) -> Option<&State<N>> {
@@ -144,7 +145,7 @@ impl AnyState {
         self.held_mut()
     }
 
-    /// What it holds, where that is such a state.
+    /// The state that it holds; `None` if that is of another kind.
     #[must_use]
     #[inline]
     pub fn held<S: Stateful>(&self) -> Option<&S> {
@@ -152,7 +153,7 @@ impl AnyState {
         state.downcast_ref()
     }
 
-    /// The same, to be changed.
+    /// As [`typed`](Self::typed), to be changed.
     #[inline]
     pub fn held_mut<S: Stateful>(&mut self) -> Option<&mut S> {
         let state: &mut dyn Any = &mut *self.0;
@@ -165,7 +166,7 @@ impl Clone for AnyState {
         self.0.cloned()
     }
 
-    /// Without an allocation where both are of one shape.
+    /// Without an allocation if both are of one shape.
     fn clone_from(&mut self, source: &Self) {
         let other: &dyn Any = &*source.0;
         if !self.0.becomes(other) {

@@ -41,7 +41,7 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// That of this thread, to hand it on to others; one that nobody asks where there is none.
+    /// The request of this thread, to hand it on to other threads; a new one if there is none.
     #[must_use]
     pub fn of_thread() -> Self {
         Self::of_thread_if_any().unwrap_or_default()
@@ -53,7 +53,7 @@ impl Stop {
 
     /// Does some work of this thread, which ends as soon as [`ask`](Self::ask) is called.
     pub fn within<T>(&self, work: impl FnOnce() -> T) -> T {
-        /// Puts back what was there, also where the work panics.
+        /// Puts back the request before, also if the work panics.
         struct Before(Option<Stop>);
         impl Drop for Before {
             fn drop(&mut self) {

@@ -21,38 +21,38 @@ use std::fmt;
 /// A method of a shape as an object.
 pub type Stepper<'a, const N: usize, const M: usize> = Box<dyn OneStep<N, M> + 'a>;
 
-/// The integrators that a system brings of its own, beside those that are for every system; by default none.
+/// The integrators that a system brings of its own, besides the general ones; by default none.
 pub trait OwnMethods<const N: usize, const M: usize> {
     /// The midpoint discrete Lagrange-d'Alembert map in a closed form of the system's own, for the smooth piece of a run that holds at the
-    /// time `t` (s). The given method is the same map in its general form: it makes the steps that have no closed form, and where the
-    /// system has none at all it is what is returned.
+    /// time `t` (s). The given method is the same map in its general form: it makes the steps that have no closed form, and is returned if
+    /// the system has no closed form at all.
     fn closed_map<'a>(&'a self, _t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
         general
     }
 
-    /// The series of the motion that holds at the time `t` (s), with steps of its own as the tolerance asks for; none where the system
-    /// has none.
+    /// The series of the motion that holds at the time `t` (s), with steps of its own as the tolerance asks for; `None` if the system has
+    /// no series.
     fn series(&self, _t: f64, _tolerance: f64) -> Option<Stepper<'_, N, M>> {
         None
     }
 }
 
-/// None.
+/// No integrators of its own.
 impl<const N: usize, const M: usize> OwnMethods<N, M> for () {}
 
 /// A system of a shape as a [`Mechanism`], with the integrators that it brings of its own.
 ///
-/// Every system is one that brings none: `Subject::from(&system)`.
+/// Every system converts to one without integrators of its own: `Subject::from(&system)`.
 pub struct Subject<'a, const N: usize, const M: usize> {
     system: Held<'a, N, M>,
     own: &'a dyn OwnMethods<N, M>,
-    /// The time of the smooth piece (s), where it is one.
+    /// The time of the smooth piece (s), if the system is one.
     at: f64,
     shaped: Option<&'static Shaped<N, M>>,
 }
 
-/// What is compiled for a shape where a system can be run by every method and analysed. A system that is only driven by methods of its shape
-/// costs none of this code.
+/// The code that is compiled for a shape if a system can be run by every method and analysed. A system that is only driven by methods of
+/// its shape costs none of this code.
 struct Shaped<const N: usize, const M: usize> {
     stepper: for<'b> fn(&Method, &'b dyn OwnMethods<N, M>, f64) -> Stepper<'b, N, M>,
     field: fn(&dyn Gradients<N, M>, f64, &[f64; N], &[f64; N]) -> Option<Result<ReducedField, Singular>>,
@@ -97,7 +97,7 @@ fn reduced_derivative<const N: usize, const M: usize>(
     Ok(DMatrix::from_fn(rows.len(), rows.len(), |i, j| rows[i][j]))
 }
 
-/// The system, by what can be asked of it.
+/// The system, by the questions that it answers.
 enum Held<'a, const N: usize, const M: usize> {
     Smooth(&'a dyn Mechanics<N, M>),
     Seeded(&'a dyn SeededMechanics<N, M>),
@@ -107,7 +107,7 @@ enum Held<'a, const N: usize, const M: usize> {
 }
 
 impl<'a, const N: usize, const M: usize> Subject<'a, N, M> {
-    /// A system of which everything can be asked.
+    /// A system that answers all questions.
     pub fn new(system: &'a dyn FullMechanics<N, M>, own: &'a dyn OwnMethods<N, M>) -> Self {
         Self { system: Held::Full(system), own, at: 0.0, shaped: Some(&Shaped::ALL) }
     }
@@ -117,7 +117,7 @@ impl<'a, const N: usize, const M: usize> Subject<'a, N, M> {
         Self { system: Held::Smooth(system), own: &(), at: 0.0, shaped: None }
     }
 
-    /// Another system of the shape, to which the same can be done.
+    /// Another system of the shape, with the same abilities.
     fn other<'b>(&self, system: Held<'b, N, M>, own: &'b dyn OwnMethods<N, M>, at: f64) -> Subject<'b, N, M> {
         Subject { system, own, at, shaped: self.shaped }
     }

@@ -4,21 +4,21 @@ use crate::{
 };
 use std::ops::{ControlFlow, Range};
 
-/// What became of the steps that may be divided.
+/// A summary of the steps of a run that may be divided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SubstepSummary {
-    /// How many steps were made in parts.
+    /// Number of steps that were made in parts.
     pub divided: u64,
-    /// Into how many parts, all together.
+    /// Number of their parts, all together.
     pub parts: u64,
     /// The most parts of one step.
     pub most: u64,
-    /// What was tried of the step that failed in parts too, where the run ended with one.
+    /// The failure of a step in parts, if the run ended with one.
     pub undivided: Option<Undivided<StepError>>,
 }
 
 impl SubstepSummary {
-    /// Adds a step that was made in so many parts; none are a step that was made whole.
+    /// Adds a step that was made in `parts` parts; zero stands for a step that was made whole.
     pub fn add(&mut self, parts: u64) {
         self.divided += u64::from(parts > 0);
         self.parts += parts;
@@ -33,15 +33,15 @@ impl SubstepSummary {
     /// The counts that [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none.
+    /// [`CheckpointError`] if the checkpoint has none.
     pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [divided, parts, most] = checkpoint.counts("substeps")?;
         Ok(Self { divided, parts, most, undivided: None })
     }
 }
 
-/// A part of a run, in which steps are divided where the method may: the step is then made again in sub-steps, each without the memory
-/// of the method, so that a run is the same from every checkpoint.
+/// A part of a run with divided steps, if the method may divide them: a step that fails, or does not resolve the motion, is made again in
+/// sub-steps, each without the memory of the method, so that a run is the same from every checkpoint.
 ///
 /// It goes through the code of whole steps, a step at a time. Without limits of division it is that code.
 ///
@@ -92,7 +92,7 @@ pub fn substepped_part(
     outcome.map(|()| Part { made, stopped })
 }
 
-/// The step from node `k`, whole or in parts; `Break`, with everything as it was, where the observer gives it up.
+/// The step from node `k`, whole or in parts; `Break`, with everything as it was, if the observer gives it up.
 fn step(
     system: &dyn Mechanism,
     method: &mut dyn Integrator,
@@ -162,7 +162,7 @@ fn resolves(
     Halved::resolves(step, before, after, |step, state| one(system, method, step, state).map(|_| ()))
 }
 
-/// One step by itself, without what the method remembers of others.
+/// One step by itself, without the memory of the method.
 fn one(
     system: &dyn Mechanism,
     method: &mut dyn Integrator,

@@ -19,14 +19,14 @@ pub struct Node {
     pub work: f64,
     /// Largest constraint residual `|A(q) v + b|`.
     pub constraint: f64,
-    /// Largest of the functions of the constraints on positions; none where there are none.
+    /// Largest of the functions of the constraints on positions; `None` if there are none.
     pub position: Option<f64>,
-    /// Constraint forces averaged over the step that led here; none at the start.
+    /// Constraint forces averaged over the step that led here; `None` at the start.
     pub multipliers: Option<Vec<f64>>,
 }
 
 impl Node {
-    /// What is seen there, where so much work has been done since the start (J), with these constraint forces.
+    /// The node of a view, with the work since the start (J) and the constraint forces.
     #[must_use]
     pub fn of(view: &View<'_>, work: f64, multipliers: Option<Vec<f64>>) -> Self {
         Self {
@@ -56,7 +56,7 @@ struct Choice {
     time: f64,
     multipliers: Option<Vec<f64>>,
     work: Work,
-    /// The number of the last one that was kept.
+    /// The number of the last node that was kept.
     last: Option<u64>,
 }
 
@@ -106,7 +106,7 @@ impl Trajectory {
         Self { nodes: Vec::new(), choice: Choice::every(every) }
     }
 
-    /// The same for a run that goes on from a checkpoint, whose work [`Work::load`] gave: keeps the nodes after it.
+    /// As [`every`](Self::every), for a run that goes on from a checkpoint, whose work [`Work::load`] gave: keeps the nodes after it.
     #[must_use]
     pub fn resumed(every: u64, t: f64, work: Work) -> Self {
         Self { nodes: Vec::new(), choice: Choice { time: t, work, ..Choice::every(every) } }
@@ -118,8 +118,8 @@ impl Trajectory {
         &self.nodes
     }
 
-    /// The names of the columns of a file: time, the coordinates under these names, their rates (`x'`), energy, work and the largest residual
-    /// of a constraint. They are those of a trajectory of a system of text.
+    /// The names of the columns of a file: time, the coordinates under these names, their rates (`x'`), energy, work and the largest
+    /// residual of a constraint. A trajectory of a system of text has the same columns.
     #[must_use]
     pub fn columns(names: &[&str]) -> Vec<String> {
         let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
@@ -138,7 +138,7 @@ impl Trajectory {
     /// ```
     ///
     /// # Errors
-    /// Those of writing.
+    /// The errors of writing.
     pub fn write_csv(&self, mut to: impl io::Write, names: &[&str]) -> io::Result<()> {
         writeln!(to, "{}", Self::columns(names).join(","))?;
         for node in &self.nodes {
@@ -193,17 +193,17 @@ impl<'a> Nodes<'a> {
         Self { choice: Choice::every(every), sink }
     }
 
-    /// The same for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave, and which
-    /// [`save`](Self::save) wrote to: the nodes are those that a run without the checkpoint would have handed on after it.
+    /// The same observer for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave, and
+    /// which [`save`](Self::save) wrote to: it hands on the same nodes as a run without the checkpoint does from there.
     #[must_use]
     pub fn resumed(self, (k, t): (u64, f64), work: Work, checkpoint: &Checkpoint) -> Self {
         let last = k.is_multiple_of(self.choice.every).then_some(k);
-        // Of a run whose nodes nobody saw they are not known.
+        // They are unknown if the run had no such observer.
         let multipliers = checkpoint.list("multipliers").ok();
         Self { choice: Choice { time: t, work, last, multipliers, ..self.choice }, ..self }
     }
 
-    /// Adds to a checkpoint what the last node has from the step that led there.
+    /// Adds the multipliers of the step to the last node to a checkpoint.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
         if let Some(multipliers) = &self.choice.multipliers {
             checkpoint.put("multipliers", multipliers);

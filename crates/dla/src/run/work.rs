@@ -5,22 +5,22 @@ use std::ops::ControlFlow;
 
 /// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
 ///
-/// Where a method reports the work of its step, that counts: a method of high order, or with steps of its own, integrates the
-/// [power](crate::power()) at its own stages ([`OneStep::measure_work`](crate::OneStep::measure_work)). Elsewhere, of methods up to order 6, the
-/// power is integrated with four Gauss nodes along the polynomial of degree five that has the positions, velocities and
-/// accelerations of both ends of the step, which is of order 6; where an end has no accelerations, along that of degree three. A system
-/// without any power costs no acceleration, and one that says so of itself ([`PowerSources`]) no evaluation.
-/// An impulse, where an imposed velocity jumps, does the work by which it changes the energy.
+/// If a method reports the work of its step, that counts: a method of high order, or with steps of its own, integrates the
+/// [power](crate::power()) at its own stages ([`OneStep::measure_work`](crate::OneStep::measure_work)). For other methods, up to order 6,
+/// the power is integrated with four Gauss nodes along the polynomial of degree five that has the positions, velocities and accelerations
+/// of both ends of the step, which is of order 6; if an end has no accelerations, along the polynomial of degree three. A system without
+/// any power costs no acceleration, and a system that declares so ([`PowerSources`]) no evaluation. An impulse at a jump of an imposed
+/// velocity does the work by which it changes the energy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Work {
     total: f64,
     rest: f64,
     before: Option<WorkNode>,
-    /// Where the last step began whose work was asked for.
+    /// The beginning of the last step whose work was asked for.
     start: Option<WorkNode>,
-    /// What was known at the last node, while a step is made in parts: the sum with its rest, and the node.
+    /// The sum with its rest, and the node before, as they were at the last node, while a step is made in parts.
     at_node: Option<([f64; 2], Option<WorkNode>)>,
-    /// What may do work on the piece of the system.
+    /// The sources that may do work on the piece of the system.
     sources: PowerSources,
 }
 
@@ -68,7 +68,7 @@ impl Work {
     /// The work that [`save`](Self::save) wrote, to go on from the state of the same checkpoint.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none.
+    /// [`CheckpointError`] if the checkpoint has none.
     pub fn load(checkpoint: &Checkpoint, t: f64, state: &AnyState) -> Result<Self, CheckpointError> {
         let [total, rest] = checkpoint.get("work")?;
         Ok(Self { total, rest, before: Some(WorkNode::of(t, state)), ..Self::default() })
@@ -87,7 +87,7 @@ impl Work {
 
     /// Adds the work over the step that ends at the node.
     fn over(&mut self, node: &View<'_>, report: &Report) {
-        // Where no method reports the work and something may do some, the node before is needed beside this one.
+        // If no method reports the work and a source may do some, the node before is needed beside this one.
         let asks = report.work.is_none() && self.sources.any();
         if asks {
             std::mem::swap(&mut self.before, &mut self.start);
@@ -140,7 +140,7 @@ impl Observer for Work {
         ControlFlow::Continue(())
     }
 
-    /// A step that was given up has done nothing.
+    /// A step that was given up has done no work.
     fn end(&mut self, _node: &View<'_>) {
         if let Some(([total, rest], before)) = self.at_node.take() {
             (self.total, self.rest, self.before) = (total, rest, before);

@@ -5,29 +5,29 @@ use lagrangian::from_fn;
 /// A variation of a state, or the derivative of one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variation<const N: usize> {
-    /// Of the configuration.
+    /// The variation of the configuration.
     pub q: [f64; N],
-    /// Of the velocity.
+    /// The variation of the velocity.
     pub v: [f64; N],
 }
 
 /// A variation of a state and of the parameters of its system.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tangent<const N: usize, const P: usize> {
-    /// Of the state.
+    /// The variation of the state.
     pub state: Variation<N>,
-    /// Of the parameters; it is the same along a run.
+    /// The variation of the parameters; it is the same along a run.
     pub parameters: [f64; P],
 }
 
 /// The derivative of one step `(q0, v0) -> (q1, v1)` in its start, in the parameters of the system, and in the time.
 ///
-/// The step is a map on the distribution, `A(q0) v0 + b = 0`. Along *admissible* variations, those that stay on it to first
-/// order, `A dv + d(A v + b)/dq dq + d(A v + b)/dp dp + .. = 0`, the derivative is that of the map, and the result is
-/// admissible at the end. A single column need not be admissible. Off the distribution it is the derivative of the map's
-/// extension by the equations in their general form: `v0` acts through its momentum tested against the admissible
-/// velocities ([`Dla`](crate::Dla)), through the momenta of the stages ([`Lobatto`](crate::Lobatto)), or by its part along
-/// the basis ([`Gauss`](crate::Gauss), [`Energy`](crate::Energy)). [`StepDerivative::reduced`] has no such columns.
+/// The step is a map on the distribution, `A(q0) v0 + b = 0`. *Admissible* variations stay on it to first order:
+/// `A dv + d(A v + b)/dq dq + d(A v + b)/dp dp + .. = 0`. Along them this is the derivative of the map, and the result
+/// is admissible at the end. A single column need not be admissible. Off the distribution it is the derivative of the map's extension by
+/// the equations in their general form: `v0` acts through its momentum tested against the admissible velocities ([`Dla`](crate::Dla)),
+/// through the momenta of the stages ([`Lobatto`](crate::Lobatto)), or by its part along the basis ([`Gauss`](crate::Gauss),
+/// [`Energy`](crate::Energy)). [`StepDerivative::reduced`] has no such columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepDerivative<const N: usize, const M: usize, const P: usize> {
     /// In every component of `q0`.
@@ -40,11 +40,11 @@ pub struct StepDerivative<const N: usize, const M: usize, const P: usize> {
     pub from_time: Variation<N>,
     /// In the length of the step (per s).
     pub from_step: Variation<N>,
-    /// The same in quasi-velocities, where the system has a basis of admissible velocities.
+    /// The derivative in quasi-velocities, if the system has a basis of admissible velocities.
     pub reduced: Option<ReducedDerivative<N, P>>,
-    /// How far the end of the step is from the solution of the equations that were differentiated, relative: rounding.
+    /// Relative distance of the end of the step from the solution of the equations that were differentiated: rounding.
     pub defect: f64,
-    /// What the step did.
+    /// The report of the step.
     pub report: StepReport<M>,
 }
 

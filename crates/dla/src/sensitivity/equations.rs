@@ -104,7 +104,7 @@ pub(crate) fn product<const N: usize>(w: &[Seeded; N], f: &[Seeded; N]) -> Seede
     (0..N).fold(Seeded::zero(), |sum, i| sum + w[i] * f[i])
 }
 
-/// What a method in a basis of admissible velocities says of a system without one.
+/// The error of a method in a basis of admissible velocities, on a system without one.
 pub(crate) const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
     reason: "the method needs a basis of the admissible velocities, and the system has no basis",
 };

@@ -11,7 +11,7 @@ pub enum SensitivityError {
     /// The method or the system cannot be differentiated.
     #[error("{reason}")]
     Unsupported {
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
     /// The equations of the step, restated, were not solved.
@@ -28,15 +28,15 @@ pub enum SensitivityError {
     },
 }
 
-/// A run with tangents that ended early; state and tangents are those of the last good node.
+/// A run with tangents that ended early; state and tangents are at the last good node.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("step {step}, from t = {} s: {source}", Shown(*time))]
 pub struct TangentRunError {
     /// The number of the failed step, from 1.
     pub step: u64,
-    /// The time it began at (s).
+    /// The time at which it began (s).
     pub time: f64,
-    /// What happened.
+    /// The error of the step.
     #[source]
     pub source: SensitivityError,
 }

@@ -12,7 +12,7 @@ pub(super) type Seeder<'a, const N: usize, const M: usize> = dyn Fn(&[Seeded]) -
 /// How many directions a [`Seeded`] number carries.
 const SEEDS: usize = 8;
 
-/// `x`, the variable number `index`: seeded where that is among the directions of the block.
+/// `x`, the variable number `index`: seeded if the index is among the directions of the block.
 pub(super) fn seeded(x: f64, index: usize, block: usize) -> Seeded {
     let mut number = Seeded::constant(x);
     if let Some(eps) = index.checked_sub(block * SEEDS).and_then(|k| number.eps.get_mut(k)) {

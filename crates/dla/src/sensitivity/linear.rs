@@ -14,7 +14,7 @@ const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
 impl Scaled {
     /// # Errors
-    /// [`Singular`] where a pivot vanishes to rounding or is not a number.
+    /// [`Singular`] if a pivot vanishes to rounding or is not a number.
     pub(super) fn new(mut matrix: DMatrix<f64>) -> Result<Self, Singular> {
         let size = |column: Vec<f64>| largest(&column).recip();
         let rows =

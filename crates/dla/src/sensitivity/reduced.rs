@@ -7,19 +7,19 @@ use lagrangian::{Scalar, Seeded, from_fn, mapped};
 /// A variation of a configuration and of its quasi-velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReducedVariation<const N: usize> {
-    /// Of the configuration.
+    /// The variation of the configuration.
     pub q: [f64; N],
-    /// Of the quasi-velocities; the last `M` places are zero.
+    /// The variation of the quasi-velocities; the last `M` entries are zero.
     pub xi: [f64; N],
 }
 
 /// The derivative of one step `(q0, xi0) -> (q1, xi1)` in the `2 N - M` coordinates of the distribution.
 ///
-/// `v = W xi + v_b` as for [`velocity_of`](lagrangian::velocity_of), so that every column is an admissible variation:
-/// also those in the parameters and in time, where `xi0` is fixed and `v0` goes along with the constraint.
+/// `v = W xi + v_b` as for [`velocity_of`](lagrangian::velocity_of), so that every column is an admissible variation, also the columns in
+/// the parameters and in time: there `xi0` is fixed and `v0` goes along with the constraint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedDerivative<const N: usize, const P: usize> {
-    /// How many quasi-velocities there are, `N - M`.
+    /// The number of quasi-velocities, `N - M`.
     pub dimension: usize,
     /// In every component of `q0`.
     pub from_q: [ReducedVariation<N>; N],
@@ -58,7 +58,7 @@ pub(super) struct BasisFrame<const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> BasisFrame<N, P> {
-    /// None where the system has no basis, or one that does not span the distribution.
+    /// `None` if the system has no basis, or one that does not span the distribution.
     pub(super) fn new<const M: usize>(
         seeder: &Seeder<'_, N, M>,
         parameters: &[f64; P],
@@ -102,7 +102,7 @@ impl<const N: usize, const P: usize> BasisFrame<N, P> {
         })
     }
 
-    /// The quasi-velocities' part of a variation at this end, `explicit` being what is known of `W xi + v_b` besides `dq`.
+    /// The quasi-velocities of a variation at this end; `explicit` is the change of `W xi + v_b` that is not caused by `dq`.
     fn reduced(&self, end: &Variation<N>, explicit: &[f64; N]) -> ReducedVariation<N> {
         let rest = from_fn(|i| end.v[i] - explicit[i] - (0..N).map(|j| self.in_q[j][i] * end.q[j]).sum::<f64>());
         let mut xi = self.split.solve(rest);
@@ -123,7 +123,7 @@ pub(super) struct BasisColumns<'a, const N: usize, const P: usize> {
 impl<const N: usize, const P: usize> BasisColumns<'_, N, P> {
     /// The same columns with the quasi-velocities of `start` and `end`.
     pub(super) fn reduced(&self, start: &BasisFrame<N, P>, end: &BasisFrame<N, P>) -> ReducedDerivative<N, P> {
-        // What a change of v0 alone does.
+        // The effect of a change of `v0` alone.
         let through = |v: &[f64; N]| (0..N).fold(Variation::ZERO, |sum, i| sum.plus(v[i], &self.from_v[i]));
         let none = [0.0; N];
         ReducedDerivative {

@@ -27,11 +27,11 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
 
     /// Makes the steps of a schedule with a state and tangents; returns how many were made.
     ///
-    /// After every step `each` sees the time (s) and the state, and may change the tangents, as the computation of Lyapunov exponents does that
-    /// makes them orthonormal; `Break` ends the run there. No matrix is kept.
+    /// After every step `each` sees the time (s) and the state, and may change the tangents: a computation of Lyapunov exponents makes them
+    /// orthonormal. `Break` ends the run there. No matrix is kept.
     ///
     /// # Errors
-    /// [`TangentRunError`] with the step that failed; state and tangents then are those of the last good node.
+    /// [`TangentRunError`] with the step that failed; state and tangents are then at the last good node.
     pub fn drive<Method>(
         &self,
         method: &mut Method,

@@ -67,7 +67,7 @@ impl<'a, const N: usize, const M: usize, const P: usize> Sensitivity<'a, N, M, P
         Self { system, parameters: system.parameters, seeder: Box::new(seeder) }
     }
 
-    /// On a system that `seeder` gives on numbers with derivatives, at values of its parameters; `parameters` are those of `system`.
+    /// On a system that `seeder` gives on numbers with derivatives, at values of its parameters; `parameters` are the values for `system`.
     ///
     /// For families that are known at run time, and for a system whose equations on such numbers are another object than itself.
     #[must_use]
@@ -80,7 +80,7 @@ impl<'a, const N: usize, const M: usize, const P: usize> Sensitivity<'a, N, M, P
     }
 }
 
-/// Numbers carry eight directions here, and those of a step's equations a gradient of them or two.
+/// Numbers carry eight directions here; the numbers of a step's equations carry one or two gradients of such numbers.
 const USE: StackUse = StackUse { squares: 110, rows: 60 };
 
 impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
@@ -93,7 +93,7 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
     /// Moves `state` from time `t` to `t + h` as [`OneStep::step`] does, and gives the derivative of the step.
     ///
     /// # Errors
-    /// [`SensitivityError`] where the step fails or has no derivative; `state` is then unchanged.
+    /// [`SensitivityError`] if the step fails or has no derivative; `state` is then unchanged.
     pub fn step<Method>(
         &self,
         method: &mut Method,
@@ -117,10 +117,10 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
     /// The derivative of a step that has been made: from `start` to `end`; `time` is its start and its
     /// length (s).
     ///
-    /// The method is an object here, so that what asks for derivatives of many methods is compiled once.
+    /// The method is an object here, so that code for many methods is compiled once.
     ///
     /// # Errors
-    /// As [`Sensitivity::step`], [`SensitivityError::OtherSolution`] where the step was not made by this method.
+    /// As [`Sensitivity::step`], [`SensitivityError::OtherSolution`] if the step was not made by this method.
     pub fn between(
         &self,
         method: &dyn Differentiable<N, M>,
@@ -166,7 +166,7 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
     for fraction in method.fractions() {
         let part = Elementary { method, seeder, parameters, t: t + done * h, h: fraction * h, q, v };
         let step = part.linearised()?;
-        // What the sub-step begins with, as a function of the same.
+        // The inputs of the sub-step, as functions of the inputs of the step.
         let mut begin = DMatrix::identity(inputs, inputs);
         begin.rows_mut(0, 2 * N).copy_from(&chain);
         begin[(2 * N, 2 * N + 1)] = done;
@@ -212,9 +212,9 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
 /// Steps that differ by more, relative, are different solutions; rounding is far below.
 const AGREEMENT: f64 = 1e-9;
 
-/// The largest difference between the step made and the solution of its equations: of the increments relative to the
-/// coordinates, in whose digits they are rounded, of the velocities relative to the largest, but for what the rounding of the
-/// inputs makes of them: `rounding`, in units of `2^-53`.
+/// The largest difference between the step made and the solution of its equations: of the increments, relative to the coordinates, in whose
+/// digits they are rounded; of the velocities, relative to the largest, unless the rounding of the inputs explains it (`rounding`, in units
+/// of `2^-53`).
 fn defect<const N: usize>(
     start: &State<N>,
     end: &State<N>,

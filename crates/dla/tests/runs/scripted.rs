@@ -3,7 +3,7 @@
 use dla::{Composition, Dla, Mechanics, OneStep, State, StepError, StepReport};
 use lagrangian::{Constraint, Scalar, System};
 
-/// A point on a line, which methods that do what they are told ask for nothing.
+/// A point on a line that is led at 1 m/s, which methods that do what they are told ask for nothing.
 #[derive(Clone, Copy)]
 pub(crate) struct Point;
 
@@ -12,7 +12,7 @@ impl System<1, 1> for Point {
         v[0] * v[0] * 0.5
     }
     fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 1]) -> Constraint<S, 1, 1> {
-        ([[S::zero()]], [S::zero()])
+        ([[S::constant(1.0)]], [S::constant(-1.0)])
     }
 }
 

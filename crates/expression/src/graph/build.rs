@@ -12,7 +12,7 @@ enum BuiltOperand {
 }
 
 impl Graph {
-    /// The expression of a text. `meanings` are those of the names by their position: variables, constants, or expressions that a name
+    /// The expression of a text. `meanings` gives for each name, by its position, a variable, a constant, or the expression that the name
     /// abbreviates.
     ///
     /// ```

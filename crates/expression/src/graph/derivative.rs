@@ -6,12 +6,12 @@ use crate::Function;
 impl Graph {
     /// The derivative in a variable.
     ///
-    /// Those of `abs`, `min` and `max` are written with `sign`, at a corner the mean of those on its two sides; that of `sign` is zero.
-    /// A length, the root of a sum of squares, has the derivative zero where it vanishes, and so have the angles of `atan2` where their
-    /// vector does: written with `inverse`. So have powers with a positive exponent of what has corners, as `max(0, x)^1.5`. Elsewhere it
-    /// is what the rules of differentiation make of the text: where another root vanishes it is infinite or no number.
+    /// The derivatives of `abs`, `min` and `max` are written with `sign`, at a corner as the mean of the two sides; the derivative of
+    /// `sign` is zero. A length (the root of a sum of squares) and an angle of `atan2` have the derivative zero at a zero vector, by
+    /// `inverse`. A positive power of an expression with corners, as `max(0, x)^1.5`, has the derivative zero where its base is zero.
+    /// Elsewhere the rules of differentiation hold: at a zero of another root the derivative is infinite or NaN.
     ///
-    /// What was derived once is kept.
+    /// Each derivative is computed once and kept.
     pub fn derivative(&mut self, e: Expression, variable: u32) -> Expression {
         let (bits, derivatives) = (bit(variable), &self.derivatives);
         let unknown = |e: Expression| self.bits(e) & bits != 0 && !derivatives.contains_key(&(e, variable));

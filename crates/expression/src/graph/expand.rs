@@ -6,9 +6,9 @@ use crate::Function;
 use std::collections::HashMap;
 
 impl Graph {
-    /// The expression with products of sums multiplied out, and with sines and cosines of sums written by those of their terms, so that what
-    /// cancels does. A product that would have more than `most` terms stays as it is, and so does what would lose a coefficient beside a
-    /// much larger one: `k (x - y) + x` with a `k` of `1e20`.
+    /// The expression with products of sums multiplied out, and with sines and cosines of sums expanded into sines and cosines of their
+    /// terms, so that terms cancel. A product stays as it is if it would have more than `most` terms, or would lose a coefficient beside
+    /// a much larger one: `k (x - y) + x` with a `k` of `1e20`.
     ///
     /// ```
     /// use expression::{Graph, Names, parse};

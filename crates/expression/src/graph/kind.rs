@@ -61,7 +61,7 @@ impl NodeKind {
         }
     }
 
-    /// The same of parts that have other numbers.
+    /// This node with the numbers of its parts mapped by `to`.
     pub(crate) fn moved(&self, to: impl Fn(Expression) -> Expression) -> Self {
         match self {
             Self::Constant(_) | Self::Variable(_) => self.clone(),

@@ -72,8 +72,8 @@ impl Graph {
         Self::with_limit(Self::LIMIT)
     }
 
-    /// A graph that may have so many terms and factors, all of its expressions and their derivatives together. What goes beyond is `NaN`,
-    /// and [`check`](Self::check) tells.
+    /// A graph with at most `limit` terms and factors, in all expressions and their derivatives together. An expression beyond the limit
+    /// is `NaN`, and [`check`](Self::check) then fails.
     #[must_use]
     pub fn with_limit(limit: usize) -> Self {
         Self {
@@ -87,14 +87,14 @@ impl Graph {
         }
     }
 
-    /// The same graph with room for so many terms and factors more, and no more than it had.
+    /// The same graph with room for at most `more` further terms and factors, within its old limit.
     #[must_use]
     pub fn with_room(mut self, more: usize) -> Self {
         self.limit = self.limit.min(self.size.saturating_add(more));
         self
     }
 
-    /// Whether all that was asked for had room.
+    /// Checks that every expression had room.
     ///
     /// # Errors
     /// [`Error::GraphFull`].
@@ -102,7 +102,7 @@ impl Graph {
         if self.full { Err(Error::GraphFull { limit: self.limit }) } else { Ok(()) }
     }
 
-    /// Leaves room for no more than so many terms and factors in all.
+    /// Lowers the limit to at most `limit` terms and factors in all.
     pub fn narrow(&mut self, limit: usize) {
         self.limit = self.limit.min(limit);
     }
@@ -124,7 +124,7 @@ impl Graph {
         self.intern(NodeKind::Constant(Number::new(x)))
     }
 
-    /// The variable of that number: the tape takes its value from that place. A number beyond [`LIMIT`](Self::LIMIT) has no room.
+    /// The variable number `k`: the tape takes its value from place `k`. A number beyond [`LIMIT`](Self::LIMIT) has no room.
     pub fn variable(&mut self, k: u32) -> Expression {
         if k as usize >= Self::LIMIT {
             self.full = true;
@@ -133,7 +133,7 @@ impl Graph {
         self.intern(NodeKind::Variable(k))
     }
 
-    /// The number that an expression is, where it is constant.
+    /// The number of a constant expression; `None` for any other.
     #[must_use]
     pub fn value(&self, e: Expression) -> Option<f64> {
         if let NodeKind::Constant(x) = self.kind(e) { Some(x.value()) } else { None }
@@ -143,7 +143,7 @@ impl Graph {
         self.kinds.get_index(e.index()).unwrap_or(&NodeKind::NOT_A_NUMBER)
     }
 
-    /// The expression of that kind, if it is there.
+    /// The expression of this kind, if the graph has it.
     pub(crate) fn find(&self, kind: &NodeKind) -> Option<Expression> {
         self.kinds.get_index_of(kind).map(|k| Expression(k as u32))
     }
@@ -180,10 +180,10 @@ impl Graph {
     }
 }
 
-/// The bit of an expression in which `abs`, `min` or `max` stands.
+/// The bit of expressions that contain `abs`, `min` or `max`.
 const CORNER: u64 = 1 << 63;
 
-/// The bit of a variable in those of an expression.
+/// The bit of a variable in the bits of an expression.
 pub(crate) fn bit(variable: u32) -> u64 {
     1 << (variable % 63)
 }

@@ -5,10 +5,10 @@ use std::collections::HashMap;
 /// Names with the texts that they stand for, and texts in which they stand.
 pub type Statements = (Vec<(String, String)>, Vec<String>);
 
-/// The names of expressions that are shared.
+/// The names of shared expressions.
 type Shared = HashMap<Expression, String>;
 
-/// What stands in a text without parentheses: everything, products, powers, or only what is one word.
+/// The loosest operation in a text that stands without parentheses: a sum, a product, a power, or none.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 enum TextLevel {
     Sum,
@@ -25,8 +25,7 @@ enum TextPiece {
 }
 
 impl Graph {
-    /// An expression as a text, in which what is shared is written out again and again. The variables have the names of the table, by
-    /// their numbers.
+    /// An expression as a text, in which shared parts are written out wherever they occur. The table names the variables by their numbers.
     ///
     /// [`parse`](crate::parse) and [`build`](Self::build) make the same expression of it.
     ///
@@ -46,8 +45,8 @@ impl Graph {
         self.text_with(e, names, &Shared::new())
     }
 
-    /// Expressions as texts, in which what is shared has a name: the statements that give a text to each name, in their order, and the
-    /// texts of the expressions. A name is the word with a number.
+    /// Expressions as texts, in which shared parts have names: `word` with a number. Returns the statements, each a name with its text,
+    /// in the order of use, and the texts of the expressions.
     ///
     /// ```
     /// use expression::{Graph, Names, parse};

@@ -6,32 +6,32 @@ use crate::interval::Interval;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-/// What an expression does where a variable grows by a whole turn, `2 pi`.
+/// The change of an expression if a variable grows by a whole turn, `2 pi`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Turned {
-    /// It is the same: it has that period.
+    /// No change: the expression has the period `2 pi`.
     Same,
-    /// It is another.
+    /// The value changes.
     Changed,
-    /// Its form does not say. It has the period where the sum of these parts, with these factors, has.
+    /// The form of the expression does not tell. It has the period if the sum of these parts, each times its factor, has the period.
     Open(Vec<(Expression, f64)>),
 }
 
-/// The same of a part.
+/// The change of a part of an expression.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum PartTurned {
-    /// It grows by so many turns.
+    /// The part grows by this number of turns.
     By(f64),
-    /// It is another, whatever the other variables are.
+    /// The value changes, whatever the other variables are.
     Changed,
-    /// Its form does not say.
+    /// The form of the part does not tell.
     Open,
 }
 
 impl PartTurned {
     const SAME: Self = Self::By(0.0);
 
-    /// Whether it is certainly another.
+    /// Whether the value changes for certain.
     fn changes(self) -> bool {
         self == Self::Changed || matches!(self, Self::By(turns) if turns != 0.0)
     }
@@ -190,7 +190,7 @@ impl Graph {
         }
     }
 
-    /// The parts of which the sum is to have the period: what is added to them, and what multiplies all of them, has.
+    /// The parts, with their factors, whose sum must have the period. Terms and factors around them have it.
     fn open_parts(&self, e: Expression, may_change: &dyn Fn(Expression) -> bool) -> Vec<(Expression, f64)> {
         let mut whole = e;
         loop {

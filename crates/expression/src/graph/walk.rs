@@ -2,7 +2,8 @@ use super::{Expression, Graph, NodeKind, Number};
 use std::collections::HashMap;
 
 impl Graph {
-    /// The expressions that these are made of, themselves among them, parts before what is made of them.
+    /// The roots and all their parts, each part before the expressions made of it. If `enter` refuses an expression, it is left out and
+    /// its parts are not visited through it.
     pub(crate) fn reached(&self, roots: &[Expression], mut enter: impl FnMut(Expression) -> bool) -> Vec<Expression> {
         let mut seen = vec![false; self.kinds.len()];
         let mut waiting = roots.to_vec();
@@ -53,7 +54,7 @@ impl Graph {
         self.rebuilt(e, &mut by)
     }
 
-    /// The expression with others in place of some of its parts; what is made in place of the rest is noted there.
+    /// The expression with each part that is a key of `by` replaced. Parts rebuilt on the way are added to `by`.
     pub(crate) fn rebuilt(&mut self, e: Expression, by: &mut HashMap<Expression, Expression>) -> Expression {
         for part in self.reached(&[e], |e| !by.contains_key(&e)) {
             let new = |e: Expression| by.get(&e).copied().unwrap_or(e);

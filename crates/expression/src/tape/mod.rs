@@ -76,8 +76,8 @@ impl Tape {
     /// Computes the expressions from the values of the variables, by their numbers. Nothing is allocated, and the scratch may hold
     /// anything.
     ///
-    /// Of numbers side by side, as `lagrangian::Lanes`, the caller is compiled for vector registers
-    /// (`lagrangian::vectorized`): so this is inlined.
+    /// Inlined, so that a caller on numbers side by side, as `lagrangian::Lanes`, is compiled for vector registers
+    /// (`lagrangian::vectorized`).
     ///
     /// # Errors
     /// [`Error::TooFew`] inputs, numbers of scratch, or outputs; more are left alone.
@@ -89,8 +89,8 @@ impl Tape {
         self.evaluate_with(|k| inputs[k], scratch, |k, value| outputs[k] = value)
     }
 
-    /// The same where the values of the variables do not lie in a row, nor are the results to: `input` says the value of a variable by its
-    /// number, `output` takes the value of an expression, each once, in any order.
+    /// As [`evaluate`](Self::evaluate), for values that do not lie in a row: `input` gives the value of a variable by its number,
+    /// `output` takes the value of an expression, each once, in any order.
     ///
     /// # Errors
     /// [`Error::TooFew`] numbers of scratch.

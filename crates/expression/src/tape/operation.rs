@@ -37,7 +37,7 @@ pub(crate) enum Operation {
     Whole { a: u32, n: i32 },
     /// `a^k`
     Real { a: u32, k: u32 },
-    /// `a^k` of what may be flat where it is zero.
+    /// `a^k` of a base that may be zero in a whole region.
     Flat { a: u32, k: u32 },
     /// Sine and cosine of `a`, the cosine to the place `cos`.
     SinCos { a: u32, cos: u32 },

@@ -31,7 +31,7 @@ pub(crate) enum Step {
     Length(u32),
     Whole(u32, i32),
     Real(u32, f64),
-    /// A positive power of what may be flat where it is zero.
+    /// A positive power of a base that may be zero in a whole region.
     Flat(u32, f64),
     Call(Function, u32, u32),
 }

@@ -123,12 +123,12 @@ impl RustPiece {
         Self { text, level: RustLevel::Word, number }
     }
 
-    /// The text, in parentheses where it binds less than that.
+    /// The text, in parentheses if it binds less tightly than `least`.
     fn at(&self, least: RustLevel) -> String {
         if self.level < least { format!("({})", self.text) } else { self.text.clone() }
     }
 
-    /// The same as a scalar.
+    /// The text as a scalar of type `S`.
     fn scalar(&self, least: RustLevel) -> String {
         if self.number { format!("S::constant({})", self.text) } else { self.at(least) }
     }
@@ -136,7 +136,8 @@ impl RustPiece {
 
 /// An operation in Rust.
 ///
-/// Of a scalar and a number the scalar stands first. A number that is a constant of the program is one only where all else is.
+/// The scalar stands first in an operation on a scalar and a number. A constant of the program is a plain number only if all other operands
+/// are plain numbers.
 fn written(operation: Operation, places: &[RustPiece], constants: &[f64]) -> RustPiece {
     let of = |place: u32| &places[place as usize];
     let k = |k: u32| number(constants[k as usize]);

@@ -10,7 +10,7 @@ use dla::{AnyState, Mechanism, Report, Schedule, SensitivityError, Size};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-/// Whether the steps of a method have a [`DiscreteMap`]: those of the family of `dla`, of `rk4` and of `rk4-reduced`.
+/// Whether the steps of a method have a [`DiscreteMap`]: only the family of `dla`, `rk4` and `rk4-reduced` have one.
 #[must_use]
 pub fn has_map(method: &Method) -> bool {
     use MethodKind::{Composed, Dla, DlaAlpha, DlaTrapezoid, Rk4, Rk4Reduced};
@@ -21,7 +21,7 @@ pub fn has_map(method: &Method) -> bool {
 #[derive(Debug)]
 pub struct DiscreteMap<'a> {
     system: &'a dyn Mechanism,
-    /// How many coordinates and quasi-velocities are its own.
+    /// The numbers of its own coordinates and own quasi-velocities.
     own: (usize, usize),
     method: &'a Method,
 }
@@ -40,18 +40,18 @@ pub enum MapError {
 /// The longest step with which a stable motion stays stable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepLimit {
-    /// With steps up to this (s) the map was computed, and is stable: no limit was found.
+    /// The map was computed with steps up to this (s), and is stable: no limit was found.
     Beyond(f64),
-    /// An eigenvalue of the map leaves the unit circle (s): up to here it is stable, and beyond it was computed and is not.
+    /// Up to this step (s) the map is stable; with longer steps an eigenvalue leaves the unit circle.
     Unstable(f64),
-    /// With steps up to this (s) the map was computed, and is stable; with longer ones it could not be.
+    /// Up to this step (s) the map is stable; with longer steps it could not be computed.
     Ends(f64, MapError),
-    /// With the shortest steps it could not be computed.
+    /// The map could not be computed with the shortest steps.
     Unknown(MapError),
 }
 
 impl StepLimit {
-    /// The limit (s), where there is one.
+    /// The limit (s); `None` if none was found.
     #[must_use]
     pub fn step(self) -> Option<f64> {
         match self {
@@ -60,7 +60,7 @@ impl StepLimit {
         }
     }
 
-    /// What ends there.
+    /// The kind of the limit.
     #[must_use]
     pub fn reason(self) -> &'static str {
         match self {
@@ -71,7 +71,7 @@ impl StepLimit {
         }
     }
 
-    /// Up to which step the map was computed, and is stable (s).
+    /// The longest step with which the map was computed and is stable (s).
     #[must_use]
     pub fn stable_up_to(self) -> Option<f64> {
         match self {
@@ -81,11 +81,11 @@ impl StepLimit {
     }
 }
 
-/// A root of the map minus one: what it moves at most, relative to one plus its size.
+/// Tolerance of a root of the map minus one: its largest change, relative to one plus the size of the point.
 const ROOT: f64 = 1e-11;
-/// How far from the equilibrium of the flow that of the map may lie, relative to the same.
+/// Largest distance between the equilibria of the flow and of the map, relative to one plus the size of the former.
 const NEAR: f64 = 0.5;
-/// Entries of the derivative of a step are rounded to this, those of the identity with them.
+/// The rounding of the entries of the derivative of a step, also after the identity is subtracted.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The limit is searched for on steps from a thousandth of the given one to 9500 times that, `1.25^72 = 9.5e6` in all.
 const FIRST: f64 = 1e-3;
@@ -94,24 +94,24 @@ const RUNGS: i32 = 72;
 const BISECTIONS: usize = 45;
 
 impl<'a> DiscreteMap<'a> {
-    /// The map of a method's steps from time zero, on a system of which so many coordinates and constraints, the first, are its own.
+    /// The map of a method's steps from time zero. The first coordinates and constraints of the system, in the numbers `own`, are its own.
     #[must_use]
     pub fn new(system: &'a dyn Mechanism, own: (usize, usize), method: &'a Method) -> Self {
         Self { system, own: own_counts(system, own), method }
     }
 
-    /// The eigenvalues of the map with the step `h` (s) in shape and quasi-velocities, along the directions that the constraints on
-    /// positions leave, at its own equilibrium near that of the flow, the largest first.
+    /// The eigenvalues of the map with the step `h` (s), the largest first, at its own equilibrium near the equilibrium of the flow: in
+    /// shape and quasi-velocities, along the directions that the constraints on positions leave.
     ///
     /// # Errors
-    /// [`MapError`] where it has none.
+    /// [`MapError`] if the map has no such equilibrium or no derivative.
     pub fn spectrum(&self, h: f64, equilibrium: &Equilibrium) -> Result<Vec<[f64; 2]>, MapError> {
         self.at_rest(h, equilibrium).map(|spectrum| spectrum.values)
     }
 
     fn at_rest(&self, h: f64, equilibrium: &Equilibrium) -> Result<Spectrum, MapError> {
         let mut outcome = None;
-        // What rests does so in every basis; a motion is steady in that of the start.
+        // A system at rest is at rest in every basis; a motion is steady in the basis of the start.
         if equilibrium.is_rest() {
             let q = &equilibrium.q;
             self.system.near(0.0, q, 0, &mut |_, near| outcome = Some(self.on(near, h, equilibrium)));
@@ -130,7 +130,7 @@ impl<'a> DiscreteMap<'a> {
         found.ok_or_else(|| failure.map_or(MapError::NoStep, MapError::Derivative))
     }
 
-    /// The longest step with which a stable equilibrium of the flow is one of the map, looked for about the step `h` (s).
+    /// The longest step with which a stable equilibrium of the flow is stable in the map, searched for about the step `h` (s).
     pub fn limit(&self, h: f64, equilibrium: &Equilibrium) -> StepLimit {
         let (mut good, mut tried) = (None, h * FIRST);
         for _ in 0..RUNGS {
@@ -148,7 +148,7 @@ impl<'a> DiscreteMap<'a> {
         self.at_rest(h, equilibrium).map(|spectrum| spectrum.is_stable_map())
     }
 
-    /// Between a step with which the map is stable and one with which it was found not to be.
+    /// The limit between a step with which the map is stable and one with which it is not.
     fn bisected(&self, mut good: f64, mut bad: f64, equilibrium: &Equilibrium) -> StepLimit {
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (good + bad);
@@ -161,8 +161,8 @@ impl<'a> DiscreteMap<'a> {
         StepLimit::Unstable(good)
     }
 
-    /// What a step changes in shape and quasi-velocities, and what its start misses of the constraints on positions, with the derivatives in
-    /// all coordinates and quasi-velocities; why the step had no derivative, where it had none.
+    /// The changes of shape and quasi-velocities in a step, and the misses of the constraints on positions at its start, with the
+    /// derivatives in all coordinates and quasi-velocities. `failure` receives the reason if the step has no derivative.
     fn moved(
         &self,
         system: &dyn Mechanism,

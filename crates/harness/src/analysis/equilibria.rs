@@ -6,20 +6,19 @@ use lagrangian::linear::Singular;
 use nalgebra::DVector;
 use thiserror::Error;
 
-/// A motion that looks the same at all times but for where it is: steady quasi-velocities, and no change of the coordinates
-/// that the equations depend on.
+/// A motion that looks the same at all times except for its place: steady quasi-velocities, and no change of the coordinates that the
+/// equations depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
     /// Configuration at time zero.
     pub q: Vec<f64>,
     /// Velocity.
     pub v: Vec<f64>,
-    /// Quasi-velocities; only those of the system's own count. At rest they are all zero.
+    /// The system's own quasi-velocities. At rest they are all zero.
     pub xi: Vec<f64>,
-    /// The coordinates that the equations depend on, the shape; the others are cyclic.
+    /// The coordinates that the equations depend on, the shape; all other coordinates are cyclic.
     pub shape: Vec<usize>,
-    /// How many directions the linear equations leave at rest: the parameters of the family that it belongs to; 0 where it
-    /// stands alone.
+    /// The number of directions that the linear equations leave at rest: the parameters of its family; 0 if it stands alone.
     pub family: usize,
     /// The eigenvalues of the flow in shape and quasi-velocities, real and imaginary parts (1/s), the largest real part first: along the
     /// directions that the constraints on positions leave.
@@ -29,27 +28,27 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// Whether nothing moves but what the constraints move.
+    /// Whether nothing moves except by the constraints.
     pub(super) fn is_rest(&self) -> bool {
         self.xi.iter().all(|xi| *xi == 0.0)
     }
 
-    /// Configuration and quasi-velocities, of so many coordinates and quasi-velocities.
+    /// The first `n` coordinates and `free` quasi-velocities.
     pub(super) fn point(&self, (n, free): (usize, usize)) -> DVector<f64> {
         [filled(n, &self.q), filled(free, &self.xi)].concat().into()
     }
 }
 
-/// What was found, and where it was looked for.
+/// The equilibria found, and the extent of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelativeEquilibria {
     /// The fastest first, rest last.
     pub found: Vec<Equilibrium>,
-    /// From so many places, the start among them, rest was looked for, and up to so far from the start in a coordinate (m, rad).
+    /// The number of places from which rest was searched, the start among them.
     pub places: usize,
-    /// See [`places`](Self::places).
+    /// The largest distance of these places from the start in a coordinate (m or rad).
     pub reach: f64,
-    /// From so many velocities steady motions were looked for.
+    /// The number of velocities from which steady motions were searched.
     pub motions: usize,
 }
 
@@ -78,17 +77,17 @@ pub enum EquilibriumError {
             nearer to where one may be"
     )]
     NoneFound {
-        /// From how many places.
+        /// The number of places.
         places: usize,
-        /// How far from the start (m, rad).
+        /// Their largest distance from the start (m or rad).
         reach: f64,
-        /// From how many velocities.
+        /// The number of velocities.
         motions: usize,
     },
 }
 
-/// Relative equilibria of a system: rest near its start and at places around it, and steady motions near its start and near motions of
-/// its energy. Of the system so many coordinates and constraints, the first, are its own: others fill up its shape, and rest.
+/// Relative equilibria of a system: rest near its start and at places around it, and steady motions near its start and near motions of its
+/// energy. The first coordinates and constraints, in the numbers `own`, are its own; further ones fill up its shape, and rest.
 ///
 /// The coordinates that the reduced equations `xi' = f(q, xi)` do not depend on are cyclic, and free to change. Searched are the roots of
 /// `f`, of the rates of the other coordinates, and of the functions of the constraints on positions. Rest is searched from the start and

@@ -2,8 +2,8 @@ use dla::{Mechanism, Size};
 use lagrangian::{Scalar, Seeded};
 use nalgebra::DMatrix;
 
-/// The reduced equations in one list, `q' = W xi + v_b` and `xi'`, with derivatives in eight directions; none where the system has no basis, or
-/// its equations are degenerate.
+/// The reduced equations in one list, `q' = W xi + v_b` and `xi'`, with derivatives in eight directions; `None` if the system has no basis,
+/// or its equations are degenerate.
 pub(super) fn slope(system: &dyn Mechanism, t: f64, z: &[Seeded]) -> Option<Vec<Seeded>> {
     let (q, xi) = z.split_at_checked(system.size().n)?;
     system.reduced_flow(t, q, xi).map(|flow| flow.concat())
@@ -23,7 +23,7 @@ pub(super) fn divergence(
     for block in variables.blocks() {
         let slope = slope(system, t, &block.seeded(&z))?;
         rates = admissible(slope.iter().skip(n).map(|rate| rate.re).collect(), n - m);
-        // Of each variable the derivative of its own rate.
+        // The derivative of each variable's rate in the variable itself.
         sum += block.all().map(|(direction, variable)| slope[variable].eps[direction]).sum::<f64>();
         let Some(normals) = normals else { continue };
         for (direction, j) in block.all().filter(|(_, variable)| *variable < normals.nrows()) {
@@ -34,12 +34,12 @@ pub(super) fn divergence(
     Some((sum, rates))
 }
 
-/// The variables of the reduced equations: of `N` coordinates and their quasi-velocities, numbered `N + a`, those that are not there to
-/// fill up a shape.
+/// The variables of the reduced equations: `N` coordinates and their quasi-velocities, numbered `N + a`, without variables that only fill
+/// up a shape.
 #[derive(Debug, Clone)]
 pub(super) struct Variables {
     numbers: Vec<usize>,
-    /// How many of them are coordinates, which stand first.
+    /// The number of coordinates among them, which stand first.
     pub(super) coordinates: usize,
 }
 
@@ -47,12 +47,12 @@ pub(super) struct Variables {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<'a> {
     variables: &'a [usize],
-    /// The place of the first among all.
+    /// The index of its first variable among all.
     pub(super) first: usize,
 }
 
 impl Variables {
-    /// Of a system those of so many coordinates and constraints, which stand first.
+    /// The variables of the first coordinates and constraints of a system, in the numbers `own`.
     pub(super) fn new(system: &dyn Mechanism, own: (usize, usize)) -> Self {
         let (coordinates, free) = own_counts(system, own);
         let n = system.size().n;
@@ -91,22 +91,22 @@ impl Block<'_> {
     }
 }
 
-/// What seeds there are directions for.
+/// The number of directions for seeds.
 const DIRECTIONS: usize = 8;
 
-/// How many coordinates and quasi-velocities of a system are its own, of which so many coordinates and constraints are.
+/// The numbers of own coordinates and own quasi-velocities of a system with `n` own coordinates and `m` own constraints.
 pub(super) fn own_counts(system: &dyn Mechanism, (n, m): (usize, usize)) -> (usize, usize) {
     let all = system.size();
     (n.min(all.n), n.saturating_sub(m).min(all.n - all.m))
 }
 
-/// Quasi-velocities with zeros in the places that do not count, those after so many.
+/// Quasi-velocities with zeros from the index `count` on, where they do not count.
 pub(super) fn admissible(mut xi: Vec<f64>, count: usize) -> Vec<f64> {
     xi.iter_mut().skip(count).for_each(|xi| *xi = 0.0);
     xi
 }
 
-/// One velocity of `n`, the others being zero.
+/// One velocity of `n`, with zeros at all other indices.
 pub(super) fn single(n: usize, place: usize, value: f64) -> Vec<f64> {
     (0..n).map(|k| if k == place { value } else { 0.0 }).collect()
 }

@@ -2,23 +2,23 @@ use super::manifold::{DEPENDENT, Split};
 use super::spectrum::{Spectrum, spectrum};
 use nalgebra::DMatrix;
 
-/// The directions along which a motion may be displaced: those of some coordinates that keep the constraints on positions, which the others
-/// follow, and those of its quasi-velocities.
+/// The directions along which a motion may be displaced: changes of the shape that keep the constraints on positions, with the remaining
+/// coordinates following, and changes of the quasi-velocities.
 pub(super) struct AllowedDirections {
     /// In the coordinates of the shape and the quasi-velocities, orthonormal.
     along: DMatrix<f64>,
-    /// The same in all coordinates and the quasi-velocities.
+    /// The same directions in all coordinates and the quasi-velocities.
     whole: DMatrix<f64>,
 }
 
 impl AllowedDirections {
-    /// Of the coordinates `shape`, the others being free to follow, and so many quasi-velocities; `rows` are the gradients of the constraints
-    /// on positions in all coordinates.
+    /// The directions of the coordinates `shape`, with the remaining coordinates following, and of `free` quasi-velocities; `rows` are the
+    /// gradients of the constraints on positions in all coordinates.
     pub(super) fn new(rows: &DMatrix<f64>, shape: &[usize], free: usize) -> Option<Self> {
         let (n, count) = (rows.ncols(), shape.len());
         let others: Vec<usize> = (0..n).filter(|i| !shape.contains(i)).collect();
         let (of_others, of_shape) = (rows.select_columns(&others), rows.select_columns(shape));
-        // What the other coordinates cannot make up for.
+        // The combinations of constraints that the remaining coordinates cannot make up for.
         let left = Split::by(&of_others.transpose(), DEPENDENT)?.unseen;
         let kept = Split::by(&(left.transpose() * &of_shape), DEPENDENT)?.unseen;
         let k = kept.ncols();
@@ -35,17 +35,17 @@ impl AllowedDirections {
         Some(Self { along, whole })
     }
 
-    /// What a matrix does along them, whose rows are those of shape and quasi-velocities and whose columns those of all coordinates and the
+    /// Restricts a matrix to these directions. Its rows belong to shape and quasi-velocities, its columns to all coordinates and the
     /// quasi-velocities.
     pub(super) fn restrict(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         self.along.tr_mul(matrix) * &self.whole
     }
 }
 
-/// The eigenvalues of `about + matrix`, in two parts: those of directions that the matrix takes to zero, or in the end to zero, are `about`;
-/// the others are those of what is left of the space without them. So the rates of a family of motions, which are often double eigenvalues
-/// with one vector, take no digits. With them the number of directions that it takes to zero at once. A singular value up to `rounding` is
-/// none.
+/// The number of directions that `matrix` takes to zero at once, and the eigenvalues of `about + matrix`. Directions that the matrix takes
+/// to zero, at once or in the end, have the eigenvalue `about`; the remaining eigenvalues are computed without these directions. So the
+/// rates of a family of motions, which are often double eigenvalues with one vector, take no digits. A singular value up to `rounding`
+/// counts as zero.
 pub(super) fn with_family(
     matrix: DMatrix<f64>,
     about: f64,
@@ -70,5 +70,5 @@ pub(super) fn with_family(
     Some((family.unwrap_or(0), spectrum(&rest, order)?.with(&vec![[about, 0.0]; neutral], order)))
 }
 
-/// A singular value below this, relative to the norm of the matrix, is that of a direction which it takes to zero.
+/// A direction with a singular value below this, relative to the norm of the matrix, counts as taken to zero.
 const UNSEEN: f64 = 1e-10;

@@ -9,14 +9,14 @@ use crate::{Method, Progress};
 use dla::{Mechanism, Schedule, SensitivityError};
 use thiserror::Error;
 
-/// What exponents are asked for.
+/// The exponents asked for, and their motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LyapunovRequest {
-    /// When the counted steps are.
+    /// The schedule of the counted steps.
     pub schedule: Schedule,
-    /// So many steps are made before them, until the motion and the tangent vectors have settled.
+    /// Number of steps before them, in which the motion and the tangent vectors settle.
     pub settle: u64,
-    /// How many exponents, the largest first; all where none is said.
+    /// Number of exponents, the largest first; `None` for all.
     pub exponents: Option<usize>,
     /// Configuration at the start.
     pub q: Vec<f64>,
@@ -29,13 +29,13 @@ pub struct LyapunovRequest {
 pub struct Lyapunov {
     /// The exponents (1/s), the largest first.
     pub exponents: Vec<f64>,
-    /// Half the width of the 95 % confidence interval of each (1/s); none where the run is too short.
+    /// Half the width of the 95 % confidence interval of each (1/s); `None` if the run is too short.
     ///
-    /// From batch means, the scatter of what a longer run averages out, and beyond it `3 ln(1 + T/t)/T`, what an exponent may be off
-    /// by because the time `T` is finite, with the time `t` before it that is not counted: neighbours of regular motions part company by
-    /// powers of the time. An exponent that is zero has an interval that holds zero. The error of the steps is not in it.
+    /// It is the sum of two parts: the scatter that a longer run averages out, from batch means, and `3 ln(1 + T/t)/T`, the possible error
+    /// because the counted time `T` is finite, after the time `t` that is not counted: neighbours of regular motions part company by powers
+    /// of the time. The interval of an exponent of zero holds zero. The error of the steps is not in it.
     pub ci: Vec<Option<f64>>,
-    /// How many exponents there are.
+    /// The number of exponents that the motion has.
     pub most: usize,
     /// The mean over the nodes of the divergence of the continuous equations (1/s), by the trapezoidal rule.
     ///
@@ -46,9 +46,9 @@ pub struct Lyapunov {
     pub time: f64,
     /// The estimates on the way, of the same exponents in the same order.
     pub running: Vec<Running>,
-    /// What the motion is.
+    /// The kind of the motion.
     pub verdict: MotionVerdict,
-    /// What it is judged by.
+    /// The evidence for the verdict.
     pub evidence: Evidence,
     /// Why the run ended early, if it did.
     pub failure: Option<LyapunovFailure>,
@@ -57,21 +57,21 @@ pub struct Lyapunov {
 /// Why exponents are not computed at all.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LyapunovError {
-    /// There are no so many.
+    /// The motion has fewer exponents than asked for, or none is asked for.
     #[error(
         "{asked} exponents are asked for; accepted is a number from 1 to {most}: of each free coordinate one, and of \
             each free velocity"
     )]
     Count {
-        /// How many were asked for.
+        /// The number asked for.
         asked: usize,
-        /// How many there are.
+        /// The number that there are.
         most: usize,
     },
     /// Forces or constraints jump along the run, and a step across a jump has no derivative.
     #[error("forces or constraints jump at t = {time:?} s, and a motion has no derivative there")]
     Jump {
-        /// When (s).
+        /// The time of the jump (s).
         time: f64,
     },
     /// The method or the system cannot be differentiated.
@@ -81,14 +81,13 @@ pub enum LyapunovError {
 
 /// The Lyapunov exponents of a motion of a system, by the derivatives of the steps that a method makes along it.
 ///
-/// Of the system so many coordinates `n` and constraints `m`, the first, are its own: others fill up its shape, and have no exponents.
-/// `2 n - m` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions: neighbours that do
-/// not keep these are none. The exponents do not depend on the coordinates where
-/// the motion stays in a bounded region of them or is invariant under the translations that leave it. A run that fails gives what it has,
-/// with [`Lyapunov::failure`] set.
+/// The first `n` coordinates and `m` constraints of the system, `own`, are its own: others fill up its shape, and have no exponents.
+/// `2 n - m` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions:
+/// neighbours that do not keep these do not count. The exponents do not depend on the coordinates if the motion stays in a bounded region
+/// of them or is invariant under the translations that leave it. A run that fails gives what it has, with [`Lyapunov::failure`] set.
 ///
 /// # Errors
-/// [`LyapunovError`] where the request makes no sense, or the method has no derivatives here.
+/// [`LyapunovError`] if the request makes no sense, or the method has no derivatives here.
 pub fn lyapunov(
     system: &dyn Mechanism,
     own: (usize, usize),
@@ -111,12 +110,12 @@ pub fn lyapunov(
     let mut observer = (&mut stretch, Ticker::new(progress, 0));
     let outcome = integrate_pieces(system, method, &all, &mut system.state(q, v), &mut observer);
     let failure = stretch.failure.or(outcome.err().map(Into::into));
-    // Also where all steps are counted, the tangent vectors have had one step to align.
+    // Even if all steps are counted, the tangent vectors have had one step to align.
     let before = (*settle).max(1) as f64 * schedule.step.abs();
     Ok(result(&stretch, most, before, failure))
 }
 
-/// What the sums come to; the exponents in order.
+/// The result of the sums, with the exponents in order.
 fn result(stretch: &Stretch<'_>, most: usize, before: f64, failure: Option<LyapunovFailure>) -> Lyapunov {
     let (sums, time) = (&stretch.sums, stretch.sums.time);
     let mut order: Vec<usize> = (0..sums.logs.len()).collect();

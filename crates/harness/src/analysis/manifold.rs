@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// A singular value of rows of the length one that is below this is none: rows that depend on one another.
 pub(super) const DEPENDENT: f64 = 1e-10;
 
-/// What rows see of a space and what they do not, each as orthonormal columns.
+/// The part of a space that rows see, and the part that they do not, each as orthonormal columns.
 #[derive(Debug, Clone)]
 pub(super) struct Split {
     pub(super) seen: DMatrix<f64>,
@@ -12,7 +12,7 @@ pub(super) struct Split {
 }
 
 impl Split {
-    /// Of the space that the columns of `rows` number; a singular value up to `floor` is none.
+    /// Splits the space that the columns of `rows` number; a singular value up to `floor` counts as zero.
     pub(super) fn by(rows: &DMatrix<f64>, floor: f64) -> Option<Self> {
         let n = rows.ncols();
         if n == 0 {

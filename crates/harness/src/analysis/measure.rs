@@ -29,7 +29,7 @@ pub fn enclosed_area(points: &[[f64; 2]]) -> f64 {
 /// How far a step is from preserving a measure: `ln |det D Phi| + ln rho(z1) - ln rho(z0)`, from its derivative in the coordinates `(q, xi)`
 /// ([`Mechanism::step_derivative`](dla::Mechanism::step_derivative)) and the logarithms of the density at its two ends.
 ///
-/// Zero of a step that preserves it; `O(h^(p+1))` of a method of order `p` where the flow does.
+/// It is zero for a step that preserves the measure, and `O(h^(p+1))` for a method of order `p` if the flow preserves it.
 #[must_use]
 pub fn measure_defect(derivative: &DMatrix<f64>, [before, after]: [f64; 2]) -> f64 {
     derivative.determinant().abs().ln() + after - before

@@ -1,9 +1,9 @@
-//! Analyses of motions: what is steady, and how stable; what a loop leaves behind; what a symmetry conserves; whether a motion is
-//! regular or chaotic, and what the flow does to areas.
+//! Analyses of motions: steady motions and their stability; the displacement that a loop leaves; the quantities that a symmetry conserves;
+//! whether a motion is regular or chaotic, and how the flow changes areas.
 //!
-//! Exponents, sections and areas are those on the distribution, in the `2 N - M` coordinates `(q, xi)` of configuration and
-//! quasi-velocities, where the one-step maps live. What is special to a system, such as the density of its invariant measure,
-//! is handed in.
+//! Exponents, sections and areas are computed on the distribution, in the `2 N - M` coordinates `(q, xi)` of configuration and
+//! quasi-velocities, on which the one-step maps act. The caller hands in data special to a system, such as the density of its invariant
+//! measure.
 
 mod discrete;
 mod equilibria;

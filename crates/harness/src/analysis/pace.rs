@@ -2,12 +2,12 @@ use super::returns::{Point, Returns, apart, size};
 use super::verdict::PARTS;
 use crate::Blocks;
 
-/// What the quasi-velocities do along a run: whether they change, grow, repeat.
+/// The course of the quasi-velocities along a run: whether they change, grow or repeat.
 #[derive(Debug)]
 pub(super) struct Pace {
-    /// What makes each of them the root of twice its energy.
+    /// Factors that make each of them the root of twice its energy.
     weights: Vec<f64>,
-    /// From this step on the run is counted, and from this on repetitions are looked for.
+    /// The first step that is counted, and the first step at which repetitions are looked for.
     counted: u64,
     half: u64,
     sizes: Blocks,
@@ -49,7 +49,7 @@ impl Pace {
         if k >= self.half {
             match (&mut self.returns, &self.last) {
                 (Some(returns), Some(last)) => returns.add(last, &point),
-                // Where it changes quickly, a plane across is well crossed.
+                // A plane across a quick change is well crossed.
                 _ if self.quickest > 0.0 && size(&point.2) >= 0.5 * self.quickest => {
                     self.returns = Some(Returns::to(point.clone()));
                 }
@@ -64,7 +64,7 @@ impl Pace {
         self.largest
     }
 
-    /// How far it went from where it was when the count began.
+    /// The largest distance from the point at which the count began.
     pub(super) fn change(&self) -> f64 {
         self.change
     }

@@ -2,12 +2,12 @@ use dla::Stop;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::Once;
 
-/// Of a thread (bytes; taken as it is used). Kernels in registers are one function each; in a build without any optimisation
-/// every number in it has a place of its own, some megabytes in all.
+/// Stack of a thread (bytes; taken as it is used). Kernels in registers are one function each; in a build without any optimisation every
+/// number in it has a place of its own, some megabytes in all.
 pub(crate) const STACK: usize = 32 << 20;
 
-/// Makes the pool of threads that everything shares, where there is none yet: as many as the machine has cores, or as `RAYON_NUM_THREADS`
-/// asks for, where these are fewer.
+/// Makes the pool of threads that everything shares, if there is none yet: as many as the machine has cores, or as `RAYON_NUM_THREADS` asks
+/// for, if these are fewer.
 pub fn prepare_threads() {
     static POOL: Once = Once::new();
     POOL.call_once(|| {
@@ -21,7 +21,8 @@ pub fn prepare_threads() {
 
 /// `each(0)` to `each(count - 1)`, in that order, computed on all threads.
 ///
-/// Whoever waits for this thread ends the others too. Each is computed by itself, so that the number of threads (`RAYON_NUM_THREADS`) changes nothing but the time.
+/// If the caller ends this thread's work, all other threads end too. Each item is computed by itself, so that the number of threads
+/// (`RAYON_NUM_THREADS`) changes nothing but the time.
 pub fn in_parallel<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync) -> Vec<T> {
     if rayon::current_thread_index().is_none() {
         prepare_threads();

@@ -1,7 +1,7 @@
 use dla::{AnyState, Observer, Report, View};
 use std::ops::ControlFlow;
 
-/// How far a coordinate has moved after every round of so many steps.
+/// How far a coordinate has moved after every round of `every` steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rounds {
     coordinate: usize,
@@ -11,7 +11,7 @@ pub struct Rounds {
 }
 
 impl Rounds {
-    /// Watches the coordinate of that number over rounds of `every` steps.
+    /// Watches coordinate `coordinate` over rounds of `every` steps.
     #[must_use]
     pub fn new(coordinate: usize, every: u64) -> Self {
         Self { coordinate, every: every.max(1), start: None, moved: Vec::new() }
@@ -48,9 +48,8 @@ impl Observer for Rounds {
 
 /// The mean of a quasi-periodic sequence, faster than any power of its length.
 ///
-/// The weights `exp(-1/(s (1 - s)))`, `s` the place in the sequence from 0 to 1, vanish smoothly at its ends, where a plain
-/// mean has an error of one over the length. (Das, Sander, Yorke and others 2017, Nonlinearity 30, 4111-4140.) None of an empty
-/// sequence.
+/// The weights `exp(-1/(s (1 - s)))`, `s` the place in the sequence from 0 to 1, vanish smoothly at its ends; a plain mean has an error of
+/// one over the length. (Das, Sander, Yorke and others 2017, Nonlinearity 30, 4111-4140.) `None` for an empty sequence.
 #[must_use]
 pub fn weighted_mean(sequence: &[f64]) -> Option<f64> {
     let (mut sum, mut weights) = (0.0, 0.0);

@@ -1,23 +1,23 @@
-/// What velocities may differ by where they repeat, relative to their range, and times relative to the period: what cubics between nodes leave,
-/// `(h Omega)^4/384` of motions of the frequency `Omega`, is below it for `h Omega < 0.7`.
+/// Largest difference of velocities that repeat, relative to their range, and of their times, relative to the period. The error of cubics
+/// between nodes, `(h Omega)^4/384` for motions of the frequency `Omega`, is below it for `h Omega < 0.7`.
 const REPEATS: f64 = 1e-3;
-/// A plane is crossed at most so often in a period, and at least so many periods are needed (`docs/chaos.md`).
+/// Maximum number of crossings of a plane in a period, and least number of periods (`docs/chaos.md`).
 const MOST: usize = 64;
 const PERIODS: usize = 4;
-/// So many crossings are kept.
+/// Maximum number of crossings that are kept.
 const KEPT: usize = 4096;
 
 /// Values with their rates at a time (s).
 pub(super) type Point = (f64, Vec<f64>, Vec<f64>);
 
-/// When a signal comes back to where it was: it crosses the plane through one of its points, normal to its rate there.
+/// Detects the returns of a signal: it crosses the plane through one of its points, normal to its rate there.
 #[derive(Debug)]
 pub(super) struct Returns {
     origin: Vec<f64>,
     normal: Vec<f64>,
     /// Times (s) and values of the crossings in the direction of the first, which is the origin.
     crossings: Vec<(f64, Vec<f64>)>,
-    /// How far the signal went from there.
+    /// The largest distance of the signal from the origin.
     range: f64,
 }
 
@@ -45,7 +45,8 @@ impl Returns {
         self.crossings.push((time, between(before, after, above)));
     }
 
-    /// The time after which all crossings repeat, if there is one (s). Each is compared with the first of its kind, so that what changes slowly does not repeat.
+    /// The time after which all crossings repeat, if there is one (s). Each is compared with the first of its kind, so that a slow change
+    /// is no repetition.
     pub(super) fn period(&self) -> Option<f64> {
         let count = self.crossings.len();
         let repeats = |every: usize| {

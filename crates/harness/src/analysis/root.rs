@@ -1,27 +1,27 @@
 use nalgebra::{DMatrix, DVector, SVD};
 
-/// A function with its derivative, at a point where it exists; there may be fewer values than variables, or more.
+/// A function with its derivative; `None` at a point without one. There may be fewer values than variables, or more.
 pub(super) type Differentiated<'a> = dyn FnMut(&DVector<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> + 'a;
 
 /// Corrections below this, relative to the point, are rounding.
 const ROUNDING: f64 = 1e-15;
-/// A correction below this, relative to the point, is that of a point which is a root but for rounding.
+/// If the correction at a point is below this, relative to the point, the point is a root but for rounding.
 const SETTLED: f64 = 1e-13;
-/// A singular value below this, relative to the largest, is that of a direction along which the function does not change.
+/// Singular values below this, relative to the largest, count as zero: the function does not change along their directions.
 const NONE: f64 = 1e-12;
 const MAX_ITERATIONS: u32 = 100;
-/// After so many corrections in a row that do not help, none will.
+/// Number of corrections in a row that do not help, after which none will.
 const MAX_FAILURES: u32 = 16;
-/// Of the largest square of a singular value, at the first value; and the factor by which the damping shrinks or grows.
+/// Damping at the first value, relative to the largest square of a singular value; and the factor by which it shrinks or grows.
 const DAMPING: f64 = 1e-3;
 const PACE: f64 = 8.0;
 
-/// The root of `F` near `z`, which need not be isolated: of a family of roots one close by.
+/// The root of `F` near `z`, which need not be isolated: a near one of a family of roots.
 ///
 /// Levenberg and Marquardt's method with a damping that goes to zero with `|F|`, which converges quadratically also to families (Fan and
 /// Yuan 2005, Computing 74, 23-39). Each correction is the shortest of all that do as well: it comes from the singular values of the
-/// derivative, and along the directions of a family it is zero. `F` is small where it is below `tolerance`, in its own units, or where
-/// what is left of it is rounding.
+/// derivative, and along the directions of a family it is zero. The method succeeds if `F` is below `tolerance`, in its own units, or if
+/// the rest of `F` is rounding.
 pub(super) fn nearest_root(f: &mut Differentiated<'_>, start: DVector<f64>, tolerance: f64) -> Option<DVector<f64>> {
     let mut z = start;
     let (mut value, slope) = f(&z)?;
@@ -69,7 +69,7 @@ impl Decomposed {
         self.sizes.max()
     }
 
-    /// The shortest correction that takes the value to zero, as nearly as the damping leaves; that is a part of the largest square.
+    /// The shortest correction that takes the value to zero, as nearly as `damping` (a fraction of the largest square) allows.
     fn correction(&self, value: &DVector<f64>, damping: f64) -> DVector<f64> {
         let largest = self.largest();
         let mut parts = self.left.tr_mul(value);

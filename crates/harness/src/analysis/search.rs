@@ -8,21 +8,22 @@ use dla::Mechanism;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-/// Rates below this are none, relative to one plus the size of the point.
+/// Rates below this, relative to one plus the size of the point, count as zero.
 const ROOT: f64 = 1e-12;
-/// Quasi-velocities below this, relative to one plus the largest, are those of a motion that comes to rest.
+/// Quasi-velocities below this, relative to one plus the largest, belong to a motion that comes to rest.
 const REST: f64 = 1e-9;
-/// How far from a first guess the search goes on where it ends there (m, rad), and at which points and times (s) it is asked
-/// what the equations depend on: in general position.
+/// Distances (m, rad) from a first guess at which the search goes on if it ends there, and points and times (s) at which the dependence of
+/// the equations is tested: in general position.
 const OFFSETS: [f64; 5] = [0.0, 0.37, -0.61, 0.83, 1.9];
-/// Rest is looked for from so many further places, up to these parts of one plus the start in each coordinate, and all around in an angle.
+/// Number of further places from which rest is searched; they reach up to these multiples of one plus the start in each coordinate, and all
+/// around in an angle.
 const PLACES: usize = 20;
 const REACHES: [f64; 3] = [0.3, 1.0, 3.0];
 
 /// The search for the relative equilibria of a system.
 pub(super) struct Searching<'a> {
     system: &'a dyn Mechanism,
-    /// How many coordinates and quasi-velocities are its own.
+    /// The numbers of its own coordinates and own quasi-velocities.
     own: (usize, usize),
     q: Vec<f64>,
     /// The first guesses of the quasi-velocities of steady motions.
@@ -31,7 +32,7 @@ pub(super) struct Searching<'a> {
 }
 
 impl<'a> Searching<'a> {
-    /// Of a system with so many coordinates and quasi-velocities of its own, from its start.
+    /// The search in a system with `own` coordinates and quasi-velocities of its own, from its start.
     pub(super) fn new(
         system: &'a dyn Mechanism,
         own: (usize, usize),
@@ -62,7 +63,7 @@ impl<'a> Searching<'a> {
         Ok(Self { system, own, q, guesses, shape })
     }
 
-    /// What is found from all places and guesses.
+    /// The equilibria found from all places and guesses.
     pub(super) fn all(&self) -> Result<RelativeEquilibria, EquilibriumError> {
         let mut found: Vec<Equilibrium> = Vec::new();
         let mut note = |one: Option<Equilibrium>| {
@@ -72,14 +73,14 @@ impl<'a> Searching<'a> {
             }
             true
         };
-        // Rest first: it is exact, where what comes to rest from elsewhere is not.
+        // Rest first: it is exact, while a motion that comes to rest from elsewhere is not.
         let (places, reach) = self.places();
         for place in &places {
             note(self.from(place, &vec![0.0; place.len()]));
         }
         let offsets = &places[..places.len().min(OFFSETS.len())];
         for guess in &self.guesses {
-            // From a symmetric start the search may get stuck: then it starts beside it.
+            // A search from a symmetric start may get stuck: then it starts beside it.
             let _ = offsets.iter().any(|place| note(self.from(place, guess)));
         }
         // The fastest first, rest last.
@@ -92,7 +93,8 @@ impl<'a> Searching<'a> {
         }
     }
 
-    /// The places from which rest is searched, the start first, those beside it next; and how far they are from the start in a coordinate.
+    /// The places from which rest is searched, the start first, places beside it next; and their largest distance from the start in a
+    /// coordinate.
     fn places(&self) -> (Vec<Vec<f64>>, f64) {
         let moved = |offset: &dyn Fn(usize) -> f64| {
             let mut place = self.q.clone();
@@ -123,7 +125,7 @@ impl<'a> Searching<'a> {
         (places, reach)
     }
 
-    /// The relative equilibrium near a place and quasi-velocities; rest where these are zero.
+    /// The relative equilibrium near a place and quasi-velocities; a state of rest if these are zero.
     fn from(&self, place: &[f64], xi: &[f64]) -> Option<Equilibrium> {
         let (n, free) = self.own;
         let moving = if xi.iter().all(|xi| *xi == 0.0) { 0 } else { free };
@@ -140,7 +142,7 @@ impl<'a> Searching<'a> {
             self.at(moving == 0, &q, |system| self.rates(system, &q, &xi, moving))?
         };
         let z = nearest_root(&mut rates, start, tolerance)?;
-        // What is far below rounding of the largest is what a correction has left of it.
+        // A number far below rounding of the largest one is the remainder of a correction.
         let nothing = f64::EPSILON * f64::EPSILON * (1.0 + z.norm());
         let (q, xi) = split(&z.map(|x| if x.abs() < nothing { 0.0 } else { x }));
         let size = |x: &[f64]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -150,8 +152,8 @@ impl<'a> Searching<'a> {
         self.at(moving == 0, &q, |system| self.linearised(system, &q, &xi))?
     }
 
-    /// Something of the system, in the basis that is good there where rest is looked for: what rests does so in every basis, and a motion
-    /// that is steady is so in that of the start.
+    /// Evaluates `then` on the system. For rest the system has the basis that is good at `q`, since rest is rest in every basis; a motion
+    /// is steady in the basis of the start only.
     fn at<T>(&self, rest: bool, q: &[f64], mut then: impl FnMut(&dyn Mechanism) -> T) -> Option<T> {
         let mut outcome = None;
         if rest {
@@ -160,8 +162,8 @@ impl<'a> Searching<'a> {
         Some(outcome.unwrap_or_else(|| then(self.system)))
     }
 
-    /// The rates of shape and quasi-velocities and what the constraints on positions miss, with their derivatives in all coordinates and
-    /// so many of the quasi-velocities.
+    /// The rates of shape and quasi-velocities and the misses of the constraints on positions, with their derivatives in all coordinates
+    /// and in `moving` quasi-velocities.
     fn rates(
         &self,
         system: &dyn Mechanism,
@@ -180,13 +182,13 @@ impl<'a> Searching<'a> {
         (values.iter().chain(&slope).all(|x| x.is_finite())).then_some((values, slope))
     }
 
-    /// The shape and the quasi-velocities, by their places among all coordinates and these.
+    /// The indices of the shape and the own quasi-velocities among all coordinates and quasi-velocities.
     fn rows(&self) -> Vec<usize> {
         let all = self.q.len();
         self.shape.iter().copied().chain(all..all + self.own.1).collect()
     }
 
-    /// All coordinates of its own and so many quasi-velocities.
+    /// The indices of all own coordinates and `moving` quasi-velocities.
     fn columns(&self, moving: usize) -> Vec<usize> {
         let all = self.q.len();
         (0..self.own.0).chain(all..all + moving).collect()
@@ -205,7 +207,8 @@ impl<'a> Searching<'a> {
         Some(Equilibrium { q, v: field.velocity, xi, shape, family, flow: flow.values, stable })
     }
 
-    /// Whether two equilibria are the same, or of one family: of quasi-velocities of the same signs; at rest with as many unstable directions.
+    /// Whether two equilibria are the same, or of one family: with quasi-velocities of the same signs, and at rest with equally many
+    /// unstable directions.
     fn alike(&self, a: &Equilibrium, b: &Equilibrium) -> bool {
         let near = |x: f64, y: f64| (x - y).abs() <= 1e-8 * (1.0 + x.abs().max(y.abs()));
         let sign = |x: f64| if x.abs() <= 1e-8 { 0.0 } else { x.signum() };

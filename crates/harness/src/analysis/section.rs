@@ -7,7 +7,7 @@ use dla::{Close, Crossing, Event, Mechanism, RunError, Schedule, Watch};
 pub struct Section {
     /// The crossings in the order of time, located to rounding: each is the end of a step that is shortened to end there.
     pub crossings: Vec<Crossing>,
-    /// Which of them are so close that others may have been missed.
+    /// Crossings so close that others may have been missed.
     pub close: Option<Close>,
     /// The step that failed, if one did.
     pub failure: Option<RunError>,
@@ -15,10 +15,10 @@ pub struct Section {
     pub interrupted: bool,
 }
 
-/// A step is looked at in so many parts: two crossings within one are not missed.
+/// Number of parts in which a step is searched: two crossings within one are not missed.
 const SAMPLES: u32 = 2;
 
-/// Where a motion crosses the surface on which an event's function of time and state is zero (Poincare 1881).
+/// The crossings of the surface on which an event's function of time and state is zero, by a motion (Poincare 1881).
 pub fn section(
     system: &dyn Mechanism,
     method: &Method,

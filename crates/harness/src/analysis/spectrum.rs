@@ -12,7 +12,7 @@ pub(super) struct Spectrum {
     norm: f64,
 }
 
-/// The eigenvalues of a matrix, the largest by `order` first; none where it is not finite.
+/// The eigenvalues of a matrix, the largest by `order` first; `None` if the matrix is not finite.
 pub(super) fn spectrum(matrix: &DMatrix<f64>, order: fn([f64; 2]) -> f64) -> Option<Spectrum> {
     if matrix.iter().any(|x| !x.is_finite()) {
         return None;
@@ -28,7 +28,7 @@ pub(super) fn spectrum(matrix: &DMatrix<f64>, order: fn([f64; 2]) -> f64) -> Opt
 }
 
 impl Spectrum {
-    /// The same with further eigenvalues, in their order.
+    /// The spectrum with further eigenvalues, sorted by `order`.
     pub(super) fn with(mut self, more: &[[f64; 2]], order: fn([f64; 2]) -> f64) -> Self {
         self.values.extend(more);
         self.sort(order);

@@ -26,7 +26,7 @@ struct Change {
 }
 
 impl Change {
-    /// That a slope has these derivatives in the coordinates and quasi-velocities of the start, each of which is rounded once.
+    /// Takes into account that each number of the start is rounded once: the slope has derivatives in all of them.
     fn rounded(&mut self, slope: &Seeded, start: &[f64]) {
         let sum: f64 = slope.eps.iter().zip(start).map(|(eps, x)| (eps * x).abs()).sum();
         self.noise = self.noise.max(0.5 * f64::EPSILON * sum);
@@ -41,8 +41,8 @@ impl Change {
 
     /// Whether the change is round-off: by its size, or because it is small and stalls.
     ///
-    /// Far from the origin the places in a wave are rounded to more than the slopes are, and where forces cancel the slopes are
-    /// smaller than what makes them.
+    /// Far from the origin the places in a wave are rounded to more than the slopes are, and if forces cancel, the slopes are smaller than
+    /// their terms.
     fn settled(self, before: Self) -> bool {
         let rounding = (ROUNDINGS * self.noise).max(BLIND * self.size);
         self.moved <= SETTLED * self.size
@@ -51,7 +51,7 @@ impl Change {
 }
 
 impl Stages {
-    /// Gauss collocation with so many stages, of those in the table of methods (Hairer, Lubich and Wanner 2006, section II.1.3).
+    /// Gauss collocation with a number of stages in the table of methods (Hairer, Lubich and Wanner 2006, section II.1.3).
     pub(super) fn gauss(stages: usize) -> Self {
         match stages {
             2 => Self::collocation::<2>(),

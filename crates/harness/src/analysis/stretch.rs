@@ -26,7 +26,7 @@ pub enum LyapunovFailure {
     #[error("the derivative of {0}")]
     Derivative(#[from] TangentRunError),
     /// The sum of all exponents by the derivatives of the steps is not the mean divergence of the equations, which it is by Liouville's
-    /// theorem. What is told of the run ends where they agreed last.
+    /// theorem. The results end at the last agreement.
     #[error(
         "until t = {time:.6} s the sum of the exponents is {:+.6e} 1/s by the steps and {:+.6e} 1/s by the \
             divergence of the equations, and the two may differ by at most {allowed:.1e}: the steps are too long, or \
@@ -36,23 +36,23 @@ pub enum LyapunovFailure {
         sums[1]
     )]
     Volumes {
-        /// When it was seen (s).
+        /// The time at which it was seen (s).
         time: f64,
         /// The sum of all exponents from the start of the run, by the steps and by the divergence (1/s).
         sums: [f64; 2],
-        /// By how much the two may differ (1/s).
+        /// The allowed difference of the two (1/s).
         allowed: f64,
     },
 }
 
-/// So often at most the estimates so far are noted.
+/// Maximum number of running estimates that are stored.
 const NOTES: u64 = 256;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// What is summed up over the counted steps.
+/// Sums over the counted steps.
 #[derive(Debug, Clone)]
 pub(super) struct Sums {
-    /// Of `ln R_ii`.
+    /// The sums of `ln R_ii`.
     pub(super) logs: Vec<f64>,
     /// The integral of the divergence by the trapezoidal rule, and of the time (s).
     pub(super) divergence: f64,
@@ -70,10 +70,10 @@ pub(super) struct Stretch<'a> {
     /// The last node, with the equations there.
     before: Option<(f64, AnyState, Local)>,
     pub(super) sums: Sums,
-    /// The same where the volumes agreed last.
+    /// The sums at the last agreement of the volumes.
     agreed: Sums,
     volume: Volume,
-    /// Of `ln R_ii / h`.
+    /// Blocks of `ln R_ii / h`.
     pub(super) blocks: Vec<Blocks>,
     pub(super) running: Vec<Running>,
     pub(super) pace: Option<Pace>,
@@ -144,7 +144,7 @@ impl<'a> Stretch<'a> {
         match self.volume.add(h, &logs, determinant - change, ends) {
             Some(Ok(())) => self.agreed.clone_from(&self.sums),
             Some(Err(apart)) => {
-                // What came after the last agreement is not told.
+                // Steps after the last agreement are left out.
                 self.sums.clone_from(&self.agreed);
                 return Err(LyapunovFailure::Volumes { time: t, sums: apart.sums, allowed: apart.allowed });
             }

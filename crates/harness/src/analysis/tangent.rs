@@ -10,9 +10,9 @@ use std::cell::{Cell, RefCell};
 /// The derivative of a step.
 #[derive(Debug)]
 pub(super) struct Stepped {
-    /// `d(q1, xi1)/d(q0, xi0)` along the directions, where `xi1` are quasi-velocities for the next step.
+    /// `d(q1, xi1)/d(q0, xi0)` along the directions; `xi1` are quasi-velocities for the next step.
     pub(super) matrix: DMatrix<f64>,
-    /// The logarithm of the volume that a change of the basis at the end of the step makes of one.
+    /// The logarithm of the factor by which a change of the basis at the end of the step changes volumes.
     pub(super) change: f64,
     /// The divergence of the continuous equations at the end, in the basis of the step (1/s).
     pub(super) divergence: f64,
@@ -35,19 +35,19 @@ pub(super) struct Local {
 pub(super) struct Steps<'a> {
     system: &'a dyn Mechanism,
     method: &'a Method,
-    /// Of a Runge-Kutta method on the reduced equations, which is differentiated on numbers with derivatives; any other is by the implicit
-    /// function theorem.
+    /// The stages of a Runge-Kutta method on the reduced equations, which is differentiated on numbers with derivatives; `None` for any
+    /// other method, which is differentiated by the implicit function theorem.
     stages: Option<Stages>,
     variables: Variables,
-    /// The number of directions, and those of the last node as columns, where positions are constrained.
+    /// The number of directions; and the directions at the last node, as columns, if positions are constrained.
     count: usize,
     directions: RefCell<Option<DMatrix<f64>>>,
-    /// The number of the basis that holds now, of a system whose bases are local.
+    /// The number of the present basis, if bases of the system are local.
     basis: Cell<u64>,
 }
 
 impl<'a> Steps<'a> {
-    /// Of a system of which so many coordinates and constraints are its own, whose motion begins at that time (s) and configuration.
+    /// The steps of a system with `own` coordinates and constraints, whose motion begins at the time `t` (s) and the configuration `q`.
     pub(super) fn of(
         system: &'a dyn Mechanism,
         own: (usize, usize),
@@ -69,33 +69,33 @@ impl<'a> Steps<'a> {
         Ok(steps)
     }
 
-    /// How many directions there are.
+    /// The number of directions.
     pub(super) fn count(&self) -> usize {
         self.count
     }
 
-    /// Orthonormal directions across the constraints on positions, in the coordinates; none where there are no such.
+    /// Orthonormal directions across the constraints on positions, in the coordinates; `None` if there are no such constraints.
     fn normals(&self, t: f64, q: &[f64]) -> Option<DMatrix<f64>> {
         let (_, rows) = positions(self.system, self.variables.coordinates, t, q);
         if rows.nrows() == 0 { None } else { Some(Split::by(&rows, DEPENDENT)?.seen) }
     }
 
-    /// Orthonormal directions along the constraints on positions, in the variables; none where there are no such.
+    /// Orthonormal directions along the constraints on positions, in the variables; `None` if there are no such constraints.
     fn along(&self, t: f64, q: &[f64]) -> Option<DMatrix<f64>> {
         let normals = self.normals(t, q)?;
         let rows = normals.transpose().resize_horizontally(self.variables.count(), 0.0);
         Some(Split::by(&rows, DEPENDENT)?.unseen)
     }
 
-    /// A matrix from the directions of the last node to those of a place, which are the last from then on.
+    /// Restricts a matrix to map the directions at the last node to the directions at a place, which becomes the last node.
     fn restrict(&self, matrix: DMatrix<f64>, t: f64, q: &[f64]) -> DMatrix<f64> {
         let Some(after) = self.along(t, q) else { return matrix };
         let before = self.directions.replace(Some(after.clone())).unwrap_or_else(|| after.clone());
         after.tr_mul(&matrix) * before
     }
 
-    /// Does something with the system in the basis that holds at a place: of a system whose bases are local in that of this number, unless
-    /// another is better by far.
+    /// Does something with the system in the basis that holds at a place. If its bases are local, the present basis is kept, unless another
+    /// is better by far.
     fn near<T>(&self, t: f64, q: &[f64], mut then: impl FnMut(Based<'_>) -> T) -> T {
         let known = self.basis.get();
         let mut outcome = None;
@@ -132,7 +132,8 @@ impl<'a> Steps<'a> {
         Ok(Local { divergence, xi, rate })
     }
 
-    /// The derivative of the change from the coordinates `(q, xi)` of one basis to those of another: `q` stays, and so does the velocity.
+    /// The derivative of the change from the coordinates `(q, xi)` of one basis to the coordinates of another: `q` stays, and so does the
+    /// velocity.
     fn change(&self, [from, to]: [Based<'_>; 2], t: f64, state: &AnyState) -> Result<DMatrix<f64>, SensitivityError> {
         let q = state.q();
         let z = [q, &from.quasi_velocities(t, state)?].concat();
@@ -147,7 +148,7 @@ impl<'a> Steps<'a> {
             let moved = from.velocity_seeded(t, places, xi).ok_or(NO_BASIS)?;
             let kept = to.velocity_seeded(t, places, &next).ok_or(NO_BASIS)?;
             for (direction, _) in block.all() {
-                // Along the basis: what the velocity changes by beyond what it does where the quasi-velocities stay.
+                // Along the basis: the change of the velocity, minus its change with constant quasi-velocities.
                 let apart = moved.iter().zip(&kept).map(|(moved, kept)| (moved.eps[direction], kept.eps[direction]));
                 let off: Vec<f64> =
                     at_rest.iter().zip(apart).map(|(rest, (moved, kept))| rest + moved - kept).collect();
@@ -160,7 +161,7 @@ impl<'a> Steps<'a> {
         Ok(matrix)
     }
 
-    /// What the continuous equations are at the first node of a run.
+    /// The continuous equations at the first node of a run.
     pub(super) fn begin(&self, t: f64, state: &AnyState) -> Result<Local, SensitivityError> {
         self.directions.replace(self.along(t, state.q()));
         self.near(t, state.q(), |based| {
@@ -169,7 +170,8 @@ impl<'a> Steps<'a> {
         })
     }
 
-    /// The step that was made from `start` to `end`; `time` is its start and its length (s). Steps are to be asked for one after the other.
+    /// The derivative of the step from `start` to `end`; `time` is its start and its length (s). Steps must be asked for one after the
+    /// other.
     pub(super) fn step(
         &self,
         (t, h): (f64, f64),
@@ -200,13 +202,13 @@ impl<'a> Steps<'a> {
     }
 
     /// The roots of twice the kinetic energies of the basis vectors at a place, by which quasi-velocities of different units are compared;
-    /// one where a vector has none.
+    /// one for a vector without kinetic energy.
     pub(super) fn weights(&self, t: f64, state: &AnyState) -> Vec<f64> {
         self.near(t, state.q(), |based| weights(based.system, t, state))
     }
 }
 
-/// A system in a basis, with the number of that; zero where the basis holds everywhere.
+/// A system in a basis, with the number of the basis; zero if the basis holds everywhere.
 #[derive(Clone, Copy)]
 struct Based<'a> {
     number: u64,
@@ -218,7 +220,7 @@ impl Based<'_> {
     fn quasi_velocities(&self, t: f64, state: &AnyState) -> Result<Vec<f64>, SensitivityError> {
         let found = match self.number {
             0 => self.system.quasi_velocities_of(t, state),
-            // Those that a state remembers may be of another basis.
+            // The quasi-velocities in the memory of a state may belong to another basis.
             _ => self.system.quasi_velocities(t, state.q(), state.v()),
         };
         let Size { n, m } = self.system.size();
@@ -242,7 +244,7 @@ fn weights(system: &dyn Mechanism, t: f64, state: &AnyState) -> Vec<f64> {
     let rest = of(&vec![0.0; n]);
     let weight = |a: usize| {
         let unit = |sign: f64| of(&single(n, a, sign));
-        // Both signs: a constraint that moves adds what is odd.
+        // Both signs: a moving constraint adds odd terms.
         let twice = unit(1.0) - rest + (unit(-1.0) - rest);
         if twice > 0.0 && twice.is_finite() { twice.sqrt() } else { 1.0 }
     };
@@ -253,7 +255,8 @@ const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
     reason: "exponents need a basis of the admissible velocities, and the system has no basis",
 };
 
-/// The matrix of a step by stages, after a look whether it ends where the step did; `z` are configuration and quasi-velocities of the start.
+/// The matrix of a step by stages, after a check that the stages end where the step did; `z` are configuration and quasi-velocities of the
+/// start.
 fn of_stages(
     stages: &Stages,
     system: &dyn Mechanism,

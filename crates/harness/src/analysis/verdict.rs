@@ -1,11 +1,11 @@
 use std::fmt;
 
-/// What a motion is, as far as a run can tell.
+/// The kind of a motion, as far as a run can tell.
 ///
-/// Judged by the quasi-velocities, which determine a motion up to its place: where the basis of admissible velocities
-/// turns and moves with the body, a motion with constant ones is a relative equilibrium, and one with periodic ones is periodic
-/// but for a displacement. So a sleigh that drives away along a straight line does not run away: its velocities stay. (Of a system whose
-/// basis is no such frame, places can be irregular while the velocities are steady or periodic; that is not seen here.)
+/// Judged by the quasi-velocities, which determine a motion up to its place: if the basis of admissible velocities turns and moves with the
+/// body, a motion with constant quasi-velocities is a relative equilibrium, and one with periodic quasi-velocities is periodic but for a
+/// displacement. So a sleigh that drives away along a straight line does not run away: its velocities stay. (If the basis is no such frame,
+/// places can be irregular while the velocities are steady or periodic; that is not seen here.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionVerdict {
     /// The quasi-velocities are constant, to a [millionth](Evidence::verdict) of the largest of the run.
@@ -13,14 +13,14 @@ pub enum MotionVerdict {
         /// Whether an exponent is positive beyond its interval: neighbours leave it.
         unstable: bool,
     },
-    /// They repeat, to a thousandth of their range, as often as the second half of the run is long, four times at least.
+    /// They repeat, to a thousandth of their range, throughout the second half of the run, four times at least.
     Periodic {
-        /// After this time (s).
+        /// The time after which they repeat (s).
         period: f64,
         /// Whether an exponent is positive beyond its interval: neighbours leave it.
         unstable: bool,
     },
-    /// They grow all along the run, and no slower in its second half. What exponents such a motion has depends on the coordinates.
+    /// They grow all along the run, and no slower in its second half. The exponents of such a motion depend on the coordinates.
     RunsAway,
     /// They are bounded, neither constant nor periodic, and no exponent is positive beyond its interval.
     Regular,
@@ -30,53 +30,54 @@ pub enum MotionVerdict {
     Undecided(Undecided),
 }
 
-/// Why a run does not tell what its motion is.
+/// Why a run does not tell the kind of its motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Undecided {
     /// It is too short for intervals of the exponents.
     TooShort,
-    /// The velocities of its second half go beyond those of the first, but not as those of a motion that runs away.
+    /// The velocities of the second half are larger than in the first, but do not grow as in a motion that runs away.
     NotBounded,
 }
 
-/// What a motion is judged by.
+/// The numbers by which a motion is judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
-    /// The largest exponent (1/s), and half the width of its interval, that holds what a zero exponent may show in this time.
+    /// The largest exponent (1/s).
     pub largest: f64,
-    /// See [`largest`](Self::largest); none where the run is too short.
+    /// Half the width of its interval (1/s), which allows for what a zero exponent may show in this time; `None` if the run is too short.
     pub ci: Option<f64>,
     /// The largest size of the quasi-velocities, each in units of its energy (`J^(1/2)`), since the start of the run.
     pub size: f64,
-    /// How far they went from those at the start of what is counted, in the same units.
+    /// Their largest distance from their values at the start of the count, in the same units.
     pub change: f64,
-    /// Their largest size in each of [`PARTS`] parts of the run of equal length; none where it has too few nodes.
+    /// Their largest size in each of [`PARTS`] parts of the run of equal length; `None` if it has too few nodes.
     pub maxima: Option<[f64; PARTS]>,
     /// The time after which they repeat (s), if they do.
     pub period: Option<f64>,
 }
 
-/// The largest velocities are taken in so many parts of a run.
+/// Number of parts of a run in which the largest velocities are taken.
 pub const PARTS: usize = 16;
-/// Velocities that change by less, relative to the largest of the run, are constant: what a motion that settles has left, and
-/// what rounding does to a steady one, is far below after the times at which anybody looks.
+/// Velocities that change by less, relative to the largest of the run, are constant: the remainder of a motion that settles, and the
+/// rounding of a steady one, are far below this in runs of usual length.
 const STEADY: f64 = 1e-6;
-/// By so much at least the velocities of a motion that runs away grow in the second half of a run: `t^(1/3)`, the slowest that
-/// is known of a sleigh (one that a moving mass accelerates), makes 1.26.
+/// Least growth of the velocities of a motion that runs away in the second half of a run: `t^(1/3)`, the slowest that is known of a sleigh
+/// (one that a moving mass accelerates), makes 1.26.
 const GROWTH: f64 = 1.1;
-/// By so much at most those of a bounded one do, by chance. A random walk makes 1.41.
+/// Largest growth of the velocities of a bounded motion, by chance. A random walk makes 1.41.
 const BOUNDED: f64 = 1.25;
 
 impl Evidence {
     /// The verdict, by these tests in this order:
     ///
-    /// 1. *runs away*: with the largest sizes `m(t)` up to the time `t` of a run of length `T`, all parts after the first quarter have a larger
-    ///    one than the part before, `m(T) >= 1.1 m(T/2)`, and `m(T) - m(T/2) >= m(T/2) - m(T/4)`. Every power of `t`, its logarithm and every growing exponential grow so;
-    ///    what tends to a limit does not, once it is seen to.
-    /// 2. *undecided*, where the run is too short for intervals.
+    /// 1. *runs away*: with the largest sizes `m(t)` up to the time `t` of a run of length `T`, all parts after the first quarter have a
+    ///    larger one than the part before, `m(T) >= 1.1 m(T/2)`, and `m(T) - m(T/2) >= m(T/2) - m(T/4)`. Every power of `t`, its
+    ///    logarithm and every growing exponential grow so;
+    ///    velocities that tend to a limit do not, once the limit shows.
+    /// 2. *undecided*, if the run is too short for intervals.
     /// 3. *steady*: the velocities change by at most 1e-6 of their size.
     /// 4. *periodic*: there is a period.
-    /// 5. *undecided*, where the second half of the run has velocities 1.25 times as large as the first.
+    /// 5. *undecided*, if the second half of the run has velocities 1.25 times as large as the first.
     /// 6. *chaotic*: the largest exponent is above its interval. Else *regular*.
     #[must_use]
     pub fn verdict(&self) -> MotionVerdict {
@@ -113,7 +114,7 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 impl MotionVerdict {
-    /// Its name, in tables and files.
+    /// The name of the verdict, in tables and files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -1,14 +1,15 @@
-/// What every sum may be off by, relative to all that it is made of: rounding of the derivatives and of the places between nodes is far below, and an
-/// exponent that is off by as much is told well enough.
+/// Allowed error of every sum, relative to the sum of the sizes of all its terms: rounding of the derivatives and of the places between
+/// nodes is far below, and an exponent with this error is accurate enough.
 const RESOLVED: f64 = 1e-3;
-/// What a method of low order may be off by besides, at most.
+/// Largest allowed error of a method of low order, besides.
 const COARSE: f64 = 0.05;
 
-/// What the steps of a run make of a volume of starts, in two ways: by the determinants of their derivatives, and by the
-/// divergence of the equations along them (Liouville). The two are one number.
+/// The change of a volume of starts by the steps of a run, in two ways: by the determinants of their derivatives, and by the divergence of
+/// the equations along them (Liouville). The two are one number.
 ///
-/// They may differ by the error of the method, about `(h Omega)^p/12` of the rates `Omega` at which the steps stretch (the midpoint rule has that coefficient), by that of the
-/// trapezoidal rule for the integral, told by the same rule with twice the step, and by a thousandth.
+/// They may differ by three errors: of the method, about `(h Omega)^p/12` of the rates `Omega` at which the steps stretch (the midpoint
+/// rule has that coefficient); of the trapezoidal rule for the integral, estimated by the same rule with twice the step; and by a
+/// thousandth.
 #[derive(Debug)]
 pub(super) struct Volume {
     order: i32,
@@ -16,7 +17,7 @@ pub(super) struct Volume {
     time: f64,
     by_steps: f64,
     by_flow: f64,
-    /// The same integral with twice the step, and where its last step began: length so far and divergence there.
+    /// The same integral with twice the step, and the beginning of its last step: length so far and divergence there.
     by_pairs: f64,
     pair: Option<(f64, f64)>,
     /// The largest difference of the two integrals.
@@ -28,13 +29,13 @@ pub(super) struct Volume {
 /// Two sums of all exponents that are not the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Apart {
-    /// By the steps and by the equations, and what may lie between the two (1/s).
+    /// The sums by the steps and by the equations, and their allowed difference (1/s).
     pub(super) sums: [f64; 2],
     pub(super) allowed: f64,
 }
 
 impl Volume {
-    /// Of steps of a method of that order.
+    /// For steps of a method of the order `order`.
     pub(super) fn new(order: u32) -> Self {
         Self {
             order: order.try_into().unwrap_or(i32::MAX),
@@ -49,8 +50,8 @@ impl Volume {
         }
     }
 
-    /// Adds a step of length `h` (s), with the logarithms of what it stretches a frame by and that of its determinant, and the
-    /// divergence at its ends (1/s). Every second step says whether the two sums still agree.
+    /// Adds a step of length `h` (s), with the logarithms of the factors by which it stretches a frame, the logarithm of its determinant,
+    /// and the divergence at its ends (1/s). Every second step tells whether the two sums still agree.
     pub(super) fn add(
         &mut self,
         h: f64,

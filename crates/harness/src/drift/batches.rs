@@ -1,6 +1,6 @@
 use super::blocks::DriftBlock;
 
-/// So many batches.
+/// Number of batches.
 pub(super) const BATCHES: usize = 32;
 
 /// The means of 32 batches of a series, about their least-squares line; time in units of the whole series.
@@ -16,7 +16,7 @@ pub(super) struct Batches {
 }
 
 impl Batches {
-    /// The batches of a series; none of one that is too short.
+    /// The batches of a series; `None` if it is too short.
     pub(super) fn of(series: &[f64]) -> Option<Self> {
         if series.len() < 2 * BATCHES {
             return None;
@@ -37,12 +37,12 @@ impl Batches {
         (squares(&self.residuals) / BATCHES as f64).sqrt()
     }
 
-    /// The standard error of the slope where batches scatter independently about the line.
+    /// The standard error of the slope, if batches scatter independently about the line.
     pub(super) fn error(&self) -> f64 {
         (squares(&self.residuals) / (BATCHES - 2) as f64 / self.spread).sqrt()
     }
 
-    /// The standard error of the slope where it is the increments of the series that are independent.
+    /// The standard error of the slope, if the increments of the series are independent.
     ///
     /// A walk of variance `s` a unit of time has a least-squares slope of variance `6/5 s` over a unit of time (Durlauf and
     /// Phillips 1988, Econometrica 56, 1333-1354), and increments of its batch means of `2/3` of the variance of its own.
@@ -68,8 +68,8 @@ impl Batches {
         sums / (BATCHES as f64 * squared)
     }
 
-    /// Whether the increments are spread over the whole series, as those of a random walk are: neither one of them nor one half of the
-    /// series has nearly all of the sum of squares, as where a series jumps or settles.
+    /// Whether the increments are spread over the whole series, as in a random walk: neither one of them nor one half of the series has
+    /// nearly all of the sum of squares, as in a series that jumps or settles.
     pub(super) fn walks(&self) -> bool {
         let all = squares(&self.increments);
         let largest = self.increments.iter().map(|d| d * d).fold(0.0, f64::max);
@@ -100,16 +100,16 @@ pub(super) fn line(series: &[f64]) -> (f64, f64) {
     (center, if spread > 0.0 { products / spread } else { 0.0 })
 }
 
-/// The last so many batches of a series that runs away have so much of its sum of squares: those of an error `exp(c t)` that grows by
-/// more than `10^8` over the run. Of `t^p` they have less up to `p = 17`.
+/// Number of last batches of a series that runs away, and the part of its sum of squares that they have at least: an error `exp(c t)` that
+/// grows by more than `10^8` over the run has it. An error `t^p` has less up to `p = 17`.
 const LAST: usize = 2;
 const NEARLY_ALL: f64 = 0.9;
-/// Of so many batches at the end all but two have a larger error than all before: that tells growth from a single event near the end. (Two
-/// may have less, since the error of huge energies is their rounding, which is now and then zero.)
+/// Of this number of batches at the end, all but two have a larger error than all before: that tells growth from a single event near the
+/// end. (Two may have less, since the error of huge energies is their rounding, which is now and then zero.)
 const GROWING: usize = 8;
 const MAY_FALL: usize = 2;
 
-/// The largest error, where the series grows faster and faster to its end; none otherwise, and none of one that is too short.
+/// The largest error, if the series grows faster and faster to its end; `None` otherwise, and for a series that is too short.
 pub(super) fn runs_away(blocks: &[DriftBlock]) -> Option<f64> {
     if blocks.len() < 2 * BATCHES {
         return None;
@@ -126,8 +126,8 @@ pub(super) fn runs_away(blocks: &[DriftBlock]) -> Option<f64> {
     (grows && squares(&relative[BATCHES - LAST..]) > NEARLY_ALL * squares(&relative)).then_some(most)
 }
 
-/// Half the largest range within a batch: about the line of the series or, where that is less because a drift bends, about
-/// the line of the batch.
+/// Half the largest range within a batch: about the line of the series or, if that is less because a drift bends, about the line of the
+/// batch.
 pub(super) fn amplitude(means: &[f64], ranges: &[[f64; 2]]) -> f64 {
     let length = means.len();
     let (_, slope) = line(means);
@@ -143,10 +143,10 @@ pub(super) fn amplitude(means: &[f64], ranges: &[[f64; 2]]) -> f64 {
     (0..BATCHES).map(|j| within(batch(j, length))).fold(0.0, f64::max)
 }
 
-/// So many blocks of a batch have a line of their own.
+/// Number of blocks from which on a batch has a line of its own.
 const ENOUGH: usize = 8;
 
-/// Half the range about a line that has this slope over so many blocks.
+/// Half the range about a line that has the slope `slope` over `length` blocks.
 fn half_range(ranges: &[[f64; 2]], slope: f64, length: usize) -> f64 {
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
     for (i, [min, max]) in ranges.iter().enumerate() {

@@ -1,19 +1,19 @@
 use dla::{Checkpoint, CheckpointError};
 
-/// So many blocks at most; a power of two.
+/// Maximum number of blocks; a power of two.
 const MOST: usize = 1024;
 
 /// A series at equal distances in time, in constant memory: sums and extremes of at most 1024 blocks of equal length.
 ///
-/// When there are so many, each two neighbours become one and the blocks are twice as long: from 1024 values on there are
-/// always 512 to 1024 blocks, whatever the length of the series. What is lost is the order of the values within a block.
+/// At 1024 blocks, each two neighbours become one and the blocks are twice as long: from 1024 values on there are always 512 to 1024
+/// blocks, for any length of the series. The order of the values within a block is lost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
-    /// Values of a block.
+    /// Number of values of a block.
     length: u64,
-    /// Those that are full.
+    /// The full blocks.
     full: Vec<DriftBlock>,
-    /// The one that is being filled, and how many values it has.
+    /// The block that is being filled, and the number of its values.
     last: DriftBlock,
     filled: u64,
     /// The time of the first value and of the last (s).
@@ -89,7 +89,7 @@ impl Blocks {
         self.full.iter().map(|block| block.sum / self.length as f64)
     }
 
-    /// The largest values in so many parts of equal length, in the order of time; none of fewer than four blocks a part.
+    /// The largest values in `PARTS` parts of equal length, in the order of time; `None` for fewer than four blocks a part.
     pub(crate) fn maxima<const PARTS: usize>(&self) -> Option<[f64; PARTS]> {
         let count = self.full.len();
         let part = |j: usize| &self.full[j * count / PARTS..(j + 1) * count / PARTS];
@@ -117,7 +117,7 @@ impl Blocks {
     /// The blocks that [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none.
+    /// [`CheckpointError`] if the checkpoint has none.
     pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [length, filled, count] = checkpoint.counts("blocks")?;
         let times = checkpoint.get("block_times")?;

@@ -7,7 +7,7 @@ use std::fmt;
 /// say, while the system rests.
 const OF_THE_MOTION: f64 = 8.0;
 
-/// A step that changes the energy by so much of all that the motion has, beyond the work of the forces, does not follow the motion.
+/// A step that changes the energy by this fraction of all that the motion has, beyond the work of the forces, does not follow the motion.
 const OF_A_JUMP: f64 = 0.1;
 
 /// Steps that change the energy by a tenth of it, or more, though no force does that work.
@@ -15,11 +15,11 @@ const OF_A_JUMP: f64 = 0.1;
 pub struct EnergyJump {
     /// The time at which the first of them ends (s).
     pub time: f64,
-    /// By how much it changes the energy beyond the work (J).
+    /// The change of the energy beyond the work in that step (J).
     pub change: f64,
     /// The largest energy of the motion until then: at the start, kinetic, or as work (J).
     pub energy: f64,
-    /// How many such steps there are.
+    /// The number of such steps.
     pub count: u64,
 }
 
@@ -40,8 +40,7 @@ impl fmt::Display for EnergyJump {
 
 /// The energies of a motion, beside which an error of the energy is large or small.
 ///
-/// A kinetic energy counts only where the error is less than half of it: the kinetic energy of a run that has blown up is itself
-/// the error.
+/// A kinetic energy counts only if the error is less than half of it: the kinetic energy of a run that has blown up is itself the error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// The largest of the energy at the start, the kinetic energy there and the work since (J).
@@ -61,15 +60,15 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// Those of a motion that starts with this energy and this kinetic energy (J).
+    /// The energies of a motion that starts with this energy and this kinetic energy (J).
     #[must_use]
     pub fn of_start(energy: f64, kinetic: f64) -> Self {
         let initial = larger(energy.abs(), kinetic.abs());
         Self { start: initial, initial, ..Self::default() }
     }
 
-    /// Sees the error of the energy at the node at the time `t` (s), and the work since the start (J); the kinetic energy is asked for
-    /// where the error, or its change, is large beside all energies before.
+    /// Sees the error of the energy at the node at the time `t` (s), and the work since the start (J); the kinetic energy is asked for only
+    /// if the error, or its change, is large beside all energies before.
     #[inline]
     pub fn see(&mut self, t: f64, error: f64, work: f64, kinetic: impl Fn() -> f64) {
         self.start = larger(self.start, work.abs());
@@ -88,7 +87,7 @@ impl Energies {
             self.reached = larger(self.reached, kinetic);
         } else {
             let beyond = error > OF_THE_MOTION * kinetic;
-            // Also where one of them is not a number.
+            // Also if one of them is not a number.
             self.exceeded |= !beyond || !error.is_finite();
         }
     }
@@ -104,18 +103,18 @@ impl Energies {
         }
     }
 
-    /// The steps that change the energy by a tenth of it, or more. Those of a motion that begins at rest, with hardly any energy, do not
-    /// count beside what it comes to have.
+    /// The steps that change the energy by a tenth of it, or more. Such steps do not count in a motion that begins at rest, with hardly any
+    /// energy, if they are small beside its later energy.
     #[must_use]
     pub fn jump(&self) -> Option<EnergyJump> {
-        /// Of the largest energy.
+        /// Relative to the largest energy.
         const SMALL: f64 = 0.01;
         self.jump.filter(|_| self.worst > SMALL * larger(self.start, self.reached))
     }
 
     /// Whether the energy jumps again and again, to a multiple of what it was.
     pub(super) fn runs_off(&self) -> bool {
-        /// So often, and to so many times the energy of the start.
+        /// Least number of jumps, and least multiple of the energy at the start.
         const OFTEN: u64 = 3;
         const MANY: f64 = 100.0;
         self.jump.is_some_and(|jump| jump.count >= OFTEN) && self.largest > MANY * self.initial
@@ -146,10 +145,10 @@ impl Energies {
         checkpoint.put_counts("exceeded", &[u64::from(self.exceeded)]);
     }
 
-    /// Those that [`save`](Self::save) wrote.
+    /// The energies that [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// [`CheckpointError`] where the checkpoint has none.
+    /// [`CheckpointError`] if the checkpoint has none.
     pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [start, reached] = checkpoint.get("energies")?;
         let [exceeded] = checkpoint.counts("exceeded")?;

@@ -1,9 +1,9 @@
 use crate::Trend;
 
-/// The growth exponent of a series from its structure function `D(l) = mean (x_{i+l} - x_i)^2`: half the slope of `log D`
-/// against `log l`, over the octaves of lags between a 64th and a quarter of the series; none of one that is too short.
+/// The growth exponent of a series from its structure function `D(l) = mean (x_{i+l} - x_i)^2`: half the slope of `log D` against `log l`,
+/// over the octaves of lags between a 64th and a quarter of the series; `None` if the series is too short.
 ///
-/// 0 where it is bounded, 1/2 of a random walk, 1 of a line. All lags of an octave count, so that none agrees with a period.
+/// It is 0 for a bounded series, 1/2 for a random walk, 1 for a line. All lags of an octave count, so that none agrees with a period.
 pub(super) fn exponent(series: &[f64]) -> Option<f64> {
     let shortest = series.len() / 64;
     if shortest == 0 {
@@ -18,7 +18,7 @@ pub(super) fn exponent(series: &[f64]) -> Option<f64> {
     });
     let mut line = Trend::default();
     points.for_each(|(x, y)| line.add(x, y));
-    // What does not change does not grow.
+    // A constant series does not grow.
     Some(line.slope().filter(|slope| slope.is_finite()).map_or(0.0, |slope| 0.5 * slope))
 }
 

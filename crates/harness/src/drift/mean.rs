@@ -5,11 +5,10 @@ use super::batches::{BATCHES, batch};
 const T95: f64 = 2.040;
 
 impl Blocks {
-    /// Half the width of the 95 % confidence interval of the mean of the series, from the scatter of the means of 32 batches;
-    /// none where it is too short.
+    /// Half the width of the 95 % confidence interval of the mean of the series, from the scatter of the means of 32 batches; `None` if the
+    /// series is too short.
     ///
-    /// It holds where the series is stationary and batches are longer than its correlations (Schmeiser 1982, Oper. Res. 30,
-    /// 556-568).
+    /// It holds if the series is stationary and batches are longer than its correlations (Schmeiser 1982, Oper. Res. 30, 556-568).
     #[must_use]
     pub fn interval_of_mean(&self) -> Option<f64> {
         let series: Vec<f64> = self.means().collect();

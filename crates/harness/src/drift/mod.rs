@@ -1,4 +1,4 @@
-//! What an error does over a long run: how far it swings, whether it drifts, and how it grows.
+//! The course of an error over a long run: its swings, its drift, and its growth.
 
 mod batches;
 mod blocks;
@@ -12,7 +12,7 @@ pub use energies::{Energies, EnergyJump};
 use batches::Batches;
 use std::fmt;
 
-/// What the slow part of a series does.
+/// The kind of the slow part of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DriftVerdict {
     /// It is stationary, or moves too little beside the amplitude to be seen.
@@ -59,11 +59,11 @@ pub struct Drift {
     pub amplitude: f64,
     /// The secular part: slope of the least-squares line through the means of the blocks (per s).
     pub slope: f64,
-    /// Half the width of the 95 % confidence interval of the slope (per s); none where the series is too short.
+    /// Half the width of the 95 % confidence interval of the slope (per s); `None` if the series is too short.
     pub slope_ci: Option<f64>,
-    /// Growth exponent: 0 bounded, 1/2 a random walk, 1 linear; none where the series is too short.
+    /// Growth exponent: 0 bounded, 1/2 a random walk, 1 linear; `None` if the series is too short.
     pub exponent: Option<f64>,
-    /// What it comes to.
+    /// The kind of the slow part.
     pub verdict: DriftVerdict,
 }
 
@@ -72,7 +72,8 @@ const T95: f64 = 2.042;
 const T99: f64 = 2.750;
 /// The 5 % point of the statistic of stationarity about a line (Kwiatkowski et al. 1992, table 1).
 const STATIONARY: f64 = 0.146;
-/// The energy is a sum of a few terms, each with its rounding: so many units in the last place of the largest energy are no error of a method.
+/// The energy is a sum of a few terms, each with its rounding: an error of up to this number of units in the last place of the largest
+/// energy is no error of a method.
 const OF_ROUNDING: f64 = 8.0;
 /// Between the growth exponents of a bounded series and of a random walk.
 const BETWEEN: f64 = 0.25;
@@ -81,7 +82,7 @@ const BETWEEN: f64 = 0.25;
 const SEEN: f64 = 1.0 / 16.0;
 
 impl Drift {
-    /// What a series does.
+    /// The drift of a series.
     #[must_use]
     pub fn of(blocks: &Blocks) -> Self {
         let nothing =
@@ -119,12 +120,12 @@ impl Drift {
         Self { slope_ci: Some(T95 * error * size / run), exponent: Some(exponent), verdict, ..measured }
     }
 
-    /// What the error of the energy of a run does, beside the energies of its motion.
+    /// The drift of the error of the energy of a run, beside the energies of its motion.
     ///
-    /// It is round-off where it stays within a few units in the last place of the largest of them, of which no drift can be told. It has
-    /// diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
-    /// squares is in the last batches, most of which are larger than all before; or where step after step changes the energy by a tenth of
-    /// it. An error is not bounded where one step does so.
+    /// It is round-off if it stays within a few units in the last place of the largest of the energies, which can show no drift. It has
+    /// diverged if it was larger than all of them; if it ends above the energies of the start, nearly all of its sum of squares is in the
+    /// last batches, and most of these are larger than all before; or if step after step changes the energy by a tenth of it. An error is
+    /// not bounded if one step does so.
     #[must_use]
     pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
         let drift = Self::of(blocks);
@@ -146,8 +147,8 @@ impl Drift {
         self.amplitude + self.slope.abs() * time
     }
 
-    /// The length of run (s) from which on this error is the smaller one, though it starts as the larger: where the two
-    /// [`reach`](Self::reach) the same. None unless the other drifts, and faster beyond the two intervals of confidence.
+    /// The length of run (s) from which on this error is the smaller one, though it starts as the larger: the time at which both have the
+    /// same [`reach`](Self::reach). `None` unless the other drifts, and faster beyond the two intervals of confidence.
     #[must_use]
     pub fn better_from(&self, other: &Self) -> Option<f64> {
         let (own, others) = (self.slope.abs(), other.slope.abs());

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Members whose results wait in memory for those before them, at most.
+/// Maximum number of members ahead of the next one to be handed on, whose results wait in memory.
 const AHEAD: u64 = 4096;
 
-/// Computes members, on all threads, and hands what they give to `sink`, in order and as soon as it is done: all results that follow
-/// on the last one, at least one. `Break` ends it. Once `stops` says so no further member begins; those that have
-/// begun are finished and handed on. Where whoever waits for this thread ends it ([`Stop`]), they are not.
+/// Computes members, on all threads, and hands their results to `sink`, in order and as soon as possible: all results that follow on the
+/// last one, at least one. `Break` ends it. Once `stops` says so no further member begins; members that have begun are finished and handed
+/// on. If the caller ends this thread's work ([`Stop`]), they are not.
 ///
-/// A member knows nothing of the others, so that the number of threads (`RAYON_NUM_THREADS`), and where a sequence is taken up again,
-/// change no bit. Where one member takes long the others get some thousand ahead of it, and then wait: the memory is bounded.
+/// Members do not depend on one another, so that the number of threads (`RAYON_NUM_THREADS`), and the place at which a sequence is taken up
+/// again, change no bit. While one member takes long, further members get some thousand ahead of it, and then wait: the memory is bounded.
 pub fn in_order<T: Send, E>(
     members: Range<u64>,
     stops: impl Fn() -> bool + Sync,
@@ -26,7 +26,7 @@ pub fn in_order<T: Send, E>(
     let stops = || stops() || stop.asked();
     let compute = |member: u64| {
         let made = stop.within(|| each(member));
-        // Members that were ended on the way are no results.
+        // Members that were ended on the way have no results.
         if !stop.asked() {
             line.put(member, made);
         }
@@ -38,11 +38,11 @@ pub fn in_order<T: Send, E>(
         }
     };
     std::thread::scope(|scope| {
-        // Threads of its own: those of a pool may be waiting for this very call.
+        // Threads of its own: the threads of a pool may be waiting for this very call.
         let started = (0..threads).map(|_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work));
         let missing = started.filter(Result::is_err).count();
         (0..missing).for_each(|_| line.leave());
-        // Where no thread is to be had this one does the work.
+        // If no thread can be started, this one does the work.
         while missing == threads
             && let Some(member) = line.next(&stops)
         {
@@ -59,7 +59,7 @@ pub fn in_order<T: Send, E>(
     })
 }
 
-/// Members that are to be computed, and results that wait until those before them are there.
+/// Members that are to be computed, and results that wait for earlier ones.
 struct Line<T> {
     state: Mutex<LineState<T>>,
     changed: Condvar,
@@ -81,7 +81,7 @@ impl<T> Line<T> {
     }
 
     fn lock(&self) -> MutexGuard<'_, LineState<T>> {
-        // Nothing is left half done where a thread panics.
+        // A thread that panics leaves nothing half done.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -89,7 +89,7 @@ impl<T> Line<T> {
         self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next member to compute, once there is room for its result; none where all have begun, or none is to begin.
+    /// The next member to compute, once there is room for its result; `None` if all have begun, or none is to begin.
     fn next(&self, stops: &impl Fn() -> bool) -> Option<u64> {
         let mut state = self.lock();
         while state.next < self.end && state.next >= state.handed.saturating_add(AHEAD) {
@@ -108,7 +108,7 @@ impl<T> Line<T> {
         self.changed.notify_all();
     }
 
-    /// All results that are next; none once no thread is left to make one.
+    /// All results that are next; `None` once no thread is left to make one.
     fn ready(&self) -> Option<Vec<T>> {
         let mut state = self.lock();
         loop {
@@ -144,7 +144,7 @@ impl<T> Line<T> {
     }
 }
 
-/// Leaves when it is dropped, also where a thread panics.
+/// Leaves when it is dropped, also if a thread panics.
 struct Leaving<'a, T>(&'a Line<T>);
 
 impl<T> Drop for Leaving<'_, T> {

@@ -17,7 +17,7 @@ pub struct Summary {
     pub high: Vec<f64>,
     /// Energy at the start and at the end (J).
     pub energy: [f64; 2],
-    /// `max |E - E0|` (J): an error, where nothing does work.
+    /// `max |E - E0|` (J): an error, if nothing does work.
     pub energy_deviation: f64,
     /// `max |A(q) v + b|`.
     pub constraint: f64,
@@ -26,8 +26,8 @@ pub struct Summary {
 /// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
 type Of<'a> = &'a dyn Fn(f64, &[f64], &[f64]) -> Vec<f64>;
 
-/// The summary of one trajectory by any method, over every so many of its nodes and the last; of one that fails that of its valid part,
-/// with the failure.
+/// The summary of one trajectory by any method, over every `every`-th of its nodes and the last. If it fails, the summary of its valid
+/// part, with the failure.
 pub fn summarise(
     system: &dyn Mechanism,
     method: &Method,

@@ -18,16 +18,16 @@ pub(super) struct Rung {
 const SATURATED: f64 = 0.1;
 /// Below this a curve that hardly falls is on its plateau; above, its steps are still too coarse.
 const FINE: f64 = 1e-9;
-/// What counts as hardly: less than this power of the fall that the order promises.
+/// The error falls hardly if it falls by less than this power of the fall that the order promises.
 const HARDLY: f64 = 0.25;
-/// Within so many times the error of the reference, an error is that of both.
+/// Errors within this multiple of the error of the reference contain that error.
 const CLEAR: f64 = 10.0;
-/// Points on the plateau are no news: so many are kept.
+/// Number of points on the plateau that are kept: further ones are no news.
 const PLATEAU: usize = 2;
-/// A curve wants so many points above its plateau, and may take [`PATIENCE`] times as long for them.
+/// Number of points that a curve wants above its plateau; it may take [`PATIENCE`] times as long for them.
 const POINTS: usize = 6;
 const PATIENCE: f64 = 10.0;
-/// Rungs at most.
+/// Maximum number of rungs.
 const RUNGS: usize = 64;
 
 /// The tolerances of an adaptive method, a tenth from one to the next.
@@ -35,13 +35,12 @@ const TOLERANCES: [f64; 14] =
     [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
 const TENTH: f64 = 10.0;
 
-/// How many times the steps a method has from one rung to the next: enough for an error 16 times smaller, and at most
-/// twice.
+/// The factor between the steps of one rung and the next: enough for an error 16 times smaller, and at most two.
 fn ratio(order: u32) -> f64 {
     f64::min(2.0, 10.0_f64.powf(1.2 / f64::from(order.max(1))))
 }
 
-/// Runs a method with ever finer steps, until rounding or the limit of time; or says why the method refuses.
+/// Runs a method with ever finer steps, until rounding or the limit of time. Fails with the reason if the method refuses.
 pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &LadderLimits) -> Result<Vec<Rung>, &'static str> {
     let adaptive = method.is_adaptive();
     let ratio = ratio(method.info().order);
@@ -90,18 +89,18 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &LadderLimits) -
     Ok(without_coarse(rungs))
 }
 
-/// How many rungs at the end are on the plateau.
+/// The number of rungs at the end that are on the plateau.
 fn plateau(rungs: &[Rung]) -> usize {
     rungs.iter().rev().take_while(|rung| rung.mark == Some(Mark::Plateau)).count()
 }
 
-/// Marks the last rung where rounding shows in it.
+/// Marks the last rung if rounding shows in it.
 fn mark_plateau(rungs: &mut [Rung], reference: f64, order: u32) {
     let flat = match rungs {
         [.., before, last] => match (before.error, last.error) {
             (_, Some(error)) if error <= CLEAR * reference => true,
             (Some(larger), Some(error)) if error < FINE => {
-                // What the order promises of the finer step; of a tolerance, as much as it is smaller.
+                // The fall that the order promises of the finer step; for a tolerance, the ratio of the tolerances.
                 let finer = last.steps as f64 / before.steps as f64;
                 let promised = if finer > 1.0 { finer.powf(f64::from(order)) } else { TENTH };
                 error * promised.powf(HARDLY) > larger

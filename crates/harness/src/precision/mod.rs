@@ -1,4 +1,4 @@
-//! What accuracy costs in time: the error at the end of a motion against the time of computing it, method by method.
+//! The cost of accuracy in time: the error at the end of a motion against the time of computing it, method by method.
 //!
 //! Every method climbs a ladder of steps, an adaptive one of tolerances, until rounding or a limit of time. Then all runs
 //! are timed together, in rounds (work-precision diagrams: Hairer, Norsett and Wanner 1993, section II.10).
@@ -22,15 +22,15 @@ use crate::{Method, Progress};
 use dla::{RunError, stops};
 use std::fmt;
 
-/// What can be asked of a motion whose end is known, its system forgotten.
+/// The questions about a motion with a known end, for any system.
 pub struct Bench<'a> {
-    /// How long the motion takes (s).
+    /// The duration of the motion (s).
     pub duration: f64,
     /// How far the reference may be off (m or rad).
     pub reference_error: f64,
-    /// Makes a run of so many steps and gives the distance of its end from the reference (m or rad).
+    /// Makes a run with the given number of steps and gives the distance of its end from the reference (m or rad).
     pub end_error: &'a dyn Fn(&Method, u64) -> Result<f64, RunError>,
-    /// The first number of steps, from the given one on, that goes with the jumps of the system.
+    /// The first number of steps, from the given one on, that suits the jumps of the system.
     pub aligned: &'a dyn Fn(u64) -> u64,
 }
 
@@ -47,26 +47,26 @@ impl fmt::Debug for Bench<'_> {
 pub struct LadderLimits {
     /// Steps of the coarsest run.
     pub fewest: u64,
-    /// The longest run (s); ten times that for a method that has not six points yet.
+    /// The longest run (s); ten times as long for a method that has not six points yet.
     pub longest: f64,
 }
 
 /// How times were taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Clock {
-    /// The processor's time of the thread, else that on the wall.
+    /// True for the processor's time of the thread, false for elapsed time.
     pub thread: bool,
     /// The thread stayed on one core.
     pub pinned: bool,
-    /// Batches of runs that a median is of, all [rounds] unless the work was ended before; fewer, five at least of all rounds, for runs longer
-    /// than half a millisecond.
+    /// Batches of runs from which a median is taken, all [rounds] unless the work was ended before; fewer, five at least of all rounds, for
+    /// runs longer than half a millisecond.
     pub rounds: u64,
 }
 
 /// Measures every method; the points come from coarse to fine, their [Pareto front](mark_pareto) is not yet marked.
 ///
-/// `progress` is told of each ladder that is climbed, and of each [round](rounds) of the timing; where it ends the work, the curves are
-/// those of the ladders that were climbed, with the times of the rounds that were made.
+/// `progress` is told of each ladder that is climbed, and of each [round](rounds) of the timing. If it ends the work, the curves are from
+/// the ladders that were climbed, with the times of the rounds that were made.
 pub fn work_precision(
     bench: &Bench<'_>,
     methods: &[Method],
@@ -100,7 +100,7 @@ pub fn work_precision(
     (curves, Clock { thread: has_thread_time(), pinned: pinned.holds(), rounds })
 }
 
-/// The rounds of the timing.
+/// The number of rounds of the timing.
 #[must_use]
 pub fn rounds() -> u64 {
     race::ROUNDS

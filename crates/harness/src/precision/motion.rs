@@ -9,13 +9,13 @@ pub struct ReferenceMotion<'a> {
     v: Vec<f64>,
     duration: f64,
     base: u64,
-    /// The least that the pieces between jumps need.
+    /// Least number of steps, one for each piece between jumps.
     least: u64,
 }
 
-/// The coarsest run has so many steps.
+/// Number of steps of the coarsest run.
 const FEWEST: u64 = 8;
-/// More steps than so many are not asked for so that every jump falls on a node of equal steps.
+/// Largest number of equal steps that is tried so that every jump falls on a node.
 const MOST: u64 = 1 << 20;
 
 impl<'a> ReferenceMotion<'a> {
@@ -29,7 +29,7 @@ impl<'a> ReferenceMotion<'a> {
         Self { base, ..motion }
     }
 
-    /// How long it takes (s).
+    /// The duration of the motion (s).
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration
@@ -41,8 +41,8 @@ impl<'a> ReferenceMotion<'a> {
         self.aligned(FEWEST)
     }
 
-    /// The first number of steps from the given one on with which every jump of the system falls on a node of equal steps; or, where no
-    /// usual number does, that the pieces between jumps can share.
+    /// The first number of steps from the given one on with which every jump of the system falls on a node of equal steps; if no usual
+    /// number does, the first that the pieces between jumps can share.
     #[must_use]
     pub fn aligned(&self, steps: u64) -> u64 {
         steps.max(self.least).div_ceil(self.base).saturating_mul(self.base)
@@ -52,7 +52,7 @@ impl<'a> ReferenceMotion<'a> {
         Schedule { t0: 0.0, step: self.duration / steps as f64, steps }
     }
 
-    /// Where the motion ends with that many steps of a method.
+    /// The configuration at the end of the motion with `steps` steps of a method.
     ///
     /// # Errors
     /// [`RunError`] with the step that failed.

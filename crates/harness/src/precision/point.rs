@@ -3,7 +3,7 @@ use dla::RunError;
 use lagrangian::Shown;
 use std::fmt;
 
-/// What is varied along the curve of a method.
+/// The setting that varies along the curve of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RungSetting {
     /// The step (s).
@@ -12,12 +12,12 @@ pub enum RungSetting {
     Tolerance(f64),
 }
 
-/// What is to be said of a point beside its numbers.
+/// A remark on a point, beside its numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
-    /// Its error is within ten times that of the reference, or finer steps no longer make it smaller: rounding.
+    /// The error is within ten times the error of the reference, or finer steps no longer make it smaller: rounding.
     Plateau,
-    /// The run failed, with the reason, and with the failure itself where this program made the run.
+    /// The run failed, with the reason; and with the failure itself, if this program made the run.
     Failed(String, Option<RunError>),
 }
 
@@ -30,7 +30,7 @@ impl fmt::Display for RungSetting {
     }
 }
 
-/// A number with every digit, with an exponent where it would have a long row of zeros.
+/// A number with every digit, in exponent form instead of a long row of zeros.
 #[must_use]
 pub fn number(value: f64) -> String {
     if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
@@ -50,13 +50,13 @@ impl fmt::Display for Mark {
 pub struct PrecisionPoint {
     /// The name of the method.
     pub method: String,
-    /// Where the point comes from, if not from this program.
+    /// The source of the point, if not this program.
     pub source: Option<String>,
-    /// What was varied.
+    /// The setting of the run.
     pub setting: Option<RungSetting>,
     /// Steps made: of the schedule, for an adaptive method the intervals that it crosses.
     pub steps: Option<u64>,
-    /// Distance of the end from the reference; none where the run failed.
+    /// Distance of the end from the reference; `None` if the run failed.
     pub error: Option<f64>,
     /// Elapsed time of a run (s), the median.
     pub wall_seconds: Option<f64>,
@@ -64,27 +64,27 @@ pub struct PrecisionPoint {
     pub cpu_seconds: Option<f64>,
     /// The width of the middle half of the processor times, as a fraction of the median.
     pub spread: Option<f64>,
-    /// What else is to be said.
+    /// A remark.
     pub mark: Option<Mark>,
     /// No other point has both a smaller error and a smaller time.
     pub pareto: bool,
 }
 
 impl PrecisionPoint {
-    /// The time to compare (s): the processor's, or the wall's where that is all there is.
+    /// The time to compare (s): the processor's, or elapsed time if that alone is known.
     #[must_use]
     pub fn seconds(&self) -> Option<f64> {
         self.cpu_seconds.or(self.wall_seconds)
     }
 
-    /// Error and time, where the point has both, and logarithms of both.
+    /// Error and time, if the point has both and both have a logarithm.
     #[must_use]
     pub fn measured(&self) -> Option<[f64; 2]> {
         let usable = |value: &f64| value.is_finite() && *value > 0.0;
         Some([self.error.filter(usable)?, self.seconds().filter(usable)?])
     }
 
-    /// Whether the error is that of the method and not round-off.
+    /// Whether the error comes from the method and not from round-off.
     #[must_use]
     pub fn is_regular(&self) -> bool {
         self.mark.is_none() && self.error.is_some()
@@ -96,15 +96,15 @@ impl PrecisionPoint {
 pub struct Curve {
     /// The name of the method.
     pub method: String,
-    /// Where the points come from, if not from this program.
+    /// The source of the points, if not this program.
     pub source: Option<String>,
-    /// The order of the method, where it is known.
+    /// The order of the method; `None` if it is not known.
     pub order: Option<u32>,
     /// The exponent `p` of `error = c h^p`, or of the tolerance, by least squares (see [`FittedSlope`]).
     pub slope: Option<FittedSlope>,
     /// The points.
     pub points: Vec<PrecisionPoint>,
-    /// Why the method refuses the system, where it does; there are no points then.
+    /// Why the method refuses the system; there are then no points. `None` if it does not refuse.
     pub refusal: Option<&'static str>,
 }
 
@@ -116,7 +116,7 @@ impl Curve {
         Self { slope: FittedSlope::of(&curve), ..curve }
     }
 
-    /// The name of the method, with where the points come from.
+    /// The name of the method, with the source of the points.
     #[must_use]
     pub fn label(&self) -> String {
         match &self.source {

@@ -5,7 +5,7 @@ use crate::stopwatch::{Taken, take};
 use dla::stops;
 use std::hint::black_box;
 
-/// A batch of runs takes so long (s), so that reading the clock does not count; less where the longest run is shorter.
+/// Time of a batch of runs (s), long enough that reading the clock does not count; shorter if the longest run is shorter.
 const BATCH: f64 = 5e-4;
 /// Rounds; short runs have a batch in each.
 pub(super) const ROUNDS: u64 = 81;
@@ -21,9 +21,10 @@ pub(super) struct Measured {
     pub(super) spread: f64,
 }
 
-/// Times all runs, and says how many rounds were made; each round is one batch of every run: a drift of the processor's clock is the same for all of them.
+/// Times all runs, and says how many rounds were made; each round is one batch of every run, so that a drift of the processor's clock is
+/// the same for all of them.
 ///
-/// A batch is warm: where its runs are short, one goes before it that does not count. What failed has no time.
+/// A batch is warm: if its runs are short, one goes before it that does not count. A failed run has no time.
 pub(super) fn race(
     bench: &Bench<'_>,
     rungs: &[&Rung],

@@ -4,15 +4,14 @@ use dla::{RunError, Runaway};
 use lagrangian::linear::larger;
 use thiserror::Error;
 
-/// Where a motion ends, computed until finer steps change nothing but rounding.
+/// The end of a motion, computed until finer steps change nothing but rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     /// Configuration at the end, angles with their full turns.
     pub q: Vec<f64>,
     /// Steps of the run.
     pub steps: u64,
-    /// How far it may be off: the largest distance among the runs from which on nothing improves, and from one by
-    /// `gauss14`.
+    /// Its possible error: the largest distance among the runs from which on nothing improves, and from one by `gauss14`.
     pub error: f64,
 }
 
@@ -24,14 +23,14 @@ pub enum ReferenceError {
     Run {
         /// Steps of the finest run.
         steps: u64,
-        /// What happened.
+        /// The error of the run.
         #[source]
         source: RunError,
     },
     /// The method is not there.
     #[error(transparent)]
     Method(#[from] MethodError),
-    /// The best end is no end.
+    /// The best end is not accurate enough.
     #[error(
         "the reference, gauss16 with {steps} steps, is off by {error:.3e} m or rad: no error can be measured from it; a shorter \
          --duration has a better one"
@@ -39,7 +38,7 @@ pub enum ReferenceError {
     Vague {
         /// Steps of the best run.
         steps: u64,
-        /// How far it may be off (m or rad).
+        /// Its possible error (m or rad).
         error: f64,
     },
     /// Not two runs succeeded.
@@ -47,32 +46,32 @@ pub enum ReferenceError {
     TooFew,
 }
 
-/// From one run to the next there are so many times the steps: an error of order 16 falls by 650.
+/// Ratio of the steps of one run and the next: an error of order 16 falls by 650.
 const RATIO: f64 = 1.5;
-/// Runs at most; the last has 1.5^31 times the steps of the first.
+/// Maximum number of runs; the last has 1.5^31 times the steps of the first.
 const RUNS: usize = 32;
-/// Runs of more steps than this say when a motion leaves the range of numbers.
+/// Runs of more steps than this show when a motion leaves the range of numbers.
 const FINE: u64 = 1 << 10;
-/// A reference that is off by more (m or rad) is none.
+/// Largest error of a reference (m or rad).
 const VAGUE: f64 = 0.1;
-/// So many runs on, nothing has improved: rounding is reached.
+/// Number of runs without improvement after which rounding is reached.
 const PATIENCE: usize = 3;
 
 impl Reference {
     /// Runs `gauss16` with ever more steps until the distance of successive ends no longer falls.
     ///
-    /// The state carries its coordinates with twice the digits, so that what is left is the rounding of the velocities.
-    /// `distance` is that of two configurations.
+    /// The state carries its coordinates with twice the digits, so that only the rounding of the velocities is left. `distance` is the
+    /// distance of two configurations.
     ///
     /// # Errors
-    /// [`ReferenceError`] where no run succeeds.
+    /// [`ReferenceError`] if no run succeeds.
     pub fn converged(
         motion: &ReferenceMotion<'_>,
         distance: &dyn Fn(&[f64], &[f64]) -> f64,
     ) -> Result<Self, ReferenceError> {
         let (gauss16, gauss14) = (Method::named("gauss16", None)?, Method::named("gauss14", None)?);
         let mut ends: Vec<(u64, Vec<f64>)> = Vec::new();
-        // The distances of successive ends, the best of them and where it is.
+        // The distances of successive ends, the smallest of them and its index.
         let mut steps: Vec<f64> = Vec::new();
         let mut best = (f64::INFINITY, 0);
         let (mut wanted, mut failure, mut runaway) = (motion.fewest(), None, Runaway::default());
@@ -102,7 +101,7 @@ impl Reference {
             }
             wanted = (count as f64 * RATIO).ceil() as u64;
         }
-        // Of the two ends with the smallest distance the later one.
+        // The later one of the two ends with the smallest distance.
         let Some((count, q)) = ends.get(best.1 + 1).cloned() else {
             return Err(failure.unwrap_or(ReferenceError::TooFew));
         };

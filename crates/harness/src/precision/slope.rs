@@ -6,23 +6,23 @@ use crate::Trend;
 pub struct FittedSlope {
     /// The slope of the least-squares line through `(ln h, ln error)`; of the tolerance for an adaptive method.
     pub value: f64,
-    /// How many points it goes through.
+    /// The number of points of the line.
     pub points: usize,
 }
 
-/// Errors above this fraction of a metre or radian are those of steps too coarse for any order to show.
+/// Errors above this (m or rad) come from steps too coarse for any order to show.
 const COARSE: f64 = 1e-2;
-/// Errors must be so many times the largest one on the plateau of their curve: rounding is in them too.
+/// Errors must exceed this multiple of the largest one on the plateau of their curve: rounding is in them too.
 const CLEAR: f64 = 10.0;
-/// Slopes between neighbours agree where they differ by less than this fraction of their mean.
+/// Slopes between neighbours agree if they differ by less than this fraction of their mean.
 const AGREEING: f64 = 0.1;
 
 impl FittedSlope {
-    /// Fits the part of a curve above the plateau and below saturation; none with fewer than two points.
+    /// Fits the part of a curve above the plateau and below saturation; `None` with fewer than two points.
     ///
-    /// Where the step is varied, it is the longest row of points with agreeing slopes from each to the next, of equally
-    /// long ones the finest: the steps before are still too coarse for the leading power, those after show rounding. What
-    /// the order of the method is does not come in. Where not three points agree it is all of them.
+    /// If the step is varied, it fits the longest row of points with agreeing slopes from each to the next, of equally long ones the
+    /// finest: the steps before are still too coarse for the leading power, the steps after show rounding. The order of the method is not
+    /// used. If not three points agree, it fits all of them.
     pub(super) fn of(curve: &Curve) -> Option<Self> {
         let rounding = curve.points.iter().filter(|point| point.mark == Some(Mark::Plateau));
         let rounding = rounding.filter_map(|point| point.error).fold(0.0, f64::max);

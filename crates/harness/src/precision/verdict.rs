@@ -55,10 +55,10 @@ pub fn cheapest(curves: &[Curve]) -> Vec<Cheapest> {
     LEVELS.iter().map(|error| at(*error)).collect()
 }
 
-/// The time (s) in which a method reaches an error: between two points the line through their logarithms, at the coarse
-/// end the first point; or a finer point, where that takes less. (Steps so long that their solution must be followed may.)
+/// The time (s) in which a method reaches an error: between two points by the line through their logarithms, at the coarse end by the first
+/// point; or by a finer point, if that takes less. (Steps so long that their solution must be followed may take more.)
 ///
-/// None where even the finest point misses it.
+/// `None` if even the finest point misses it.
 #[must_use]
 pub fn seconds_to(points: &[PrecisionPoint], error: f64) -> Option<f64> {
     let measured: Vec<[f64; 2]> = points.iter().filter_map(PrecisionPoint::measured).collect();

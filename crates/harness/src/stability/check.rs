@@ -1,34 +1,34 @@
-//! What the numbers of a run show: small functions, each of which measures one thing against its bar.
+//! Checks on the numbers of a run: small functions, each of which measures one quantity against its bar.
 
 use lagrangian::linear::larger;
 
-/// One thing, measured.
+/// A measured quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// What.
+    /// Its name.
     pub what: &'static str,
-    /// How much of it there is.
+    /// Its value.
     pub measured: f64,
-    /// How much there may be.
+    /// Its largest allowed value.
     pub bar: f64,
 }
 
 impl Finding {
-    /// Whether it meets its bar; what is not a number does not.
+    /// Whether it meets its bar; NaN does not.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.measured <= self.bar
     }
 
-    /// The measured part of the bar, to find the worst of several.
+    /// The fraction of the bar, to find the worst of several.
     #[must_use]
     pub fn part(&self) -> f64 {
         if self.measured == 0.0 { 0.0 } else { self.measured / self.bar }
     }
 }
 
-/// The most that rounding can do in so many steps to a number of that size: some operations a step, each wrong by half an
-/// ulp and all in the same sense. (Higham 2002, Accuracy and Stability of Numerical Algorithms, section 4.2.)
+/// The most that rounding can do in `steps` steps to a number of the size `size`: some operations a step, each wrong by half an ulp and all
+/// in the same sense. (Higham 2002, Accuracy and Stability of Numerical Algorithms, section 4.2.)
 #[must_use]
 pub fn rounding(steps: usize, size: f64) -> f64 {
     /// Operations in a step that one number of its result depends on.
@@ -36,20 +36,20 @@ pub fn rounding(steps: usize, size: f64) -> f64 {
     OPERATIONS * 0.5 * f64::EPSILON * (steps + 1) as f64 * size
 }
 
-/// The most that a method of the given order is wrong by, relative, over `length` time constants with steps of `part` of
-/// one: the size of the terms that it leaves out, `part^order` for each. Beyond a part of one that is no bound.
+/// The largest relative error of a method of the given order over `length` time constants with steps of `part` of one: the size of the
+/// terms that it leaves out, `part^order` for each time constant. For `part` above one it is no bound.
 #[must_use]
 pub fn truncation(order: u32, part: f64, length: f64) -> f64 {
     length * part.powf(f64::from(order))
 }
 
-/// The largest size of some numbers, by what they are called.
+/// The largest size of some numbers, under a name.
 #[must_use]
 pub fn largest(what: &'static str, sizes: impl IntoIterator<Item = f64>, bar: f64) -> Finding {
     Finding { what, measured: sizes.into_iter().fold(0.0, larger), bar }
 }
 
-/// How many of a value's numbers have another sign than the first; zero is another sign.
+/// The number of values whose sign differs from the sign of the first; zero counts as another sign.
 #[must_use]
 pub fn sign_kept(values: impl IntoIterator<Item = f64>) -> Finding {
     let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
@@ -59,7 +59,7 @@ pub fn sign_kept(values: impl IntoIterator<Item = f64>) -> Finding {
     Finding { what: "nodes with the wrong sign", measured: changed as f64, bar: 0.0 }
 }
 
-/// By how much something that is constant changes.
+/// The change of values that should be constant.
 #[must_use]
 pub fn constant(values: impl IntoIterator<Item = f64>, bar: f64) -> Finding {
     let mut values = values.into_iter();
@@ -67,7 +67,7 @@ pub fn constant(values: impl IntoIterator<Item = f64>, bar: f64) -> Finding {
     largest("change of an integral", values.map(|x| x - first), bar)
 }
 
-/// Something that was measured elsewhere.
+/// A quantity that was measured elsewhere.
 #[must_use]
 pub fn measured(what: &'static str, measured: f64, bar: f64) -> Finding {
     Finding { what, measured, bar }

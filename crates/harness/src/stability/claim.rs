@@ -1,25 +1,25 @@
 use crate::MethodKind;
 
-/// What a case asks of a method.
+/// The property that a case asks of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Claim {
-    /// The error is that of its order, and nothing else goes wrong.
+    /// The error is of the method's order, and nothing else goes wrong.
     Order,
     /// The velocity constraint to round-off.
     Constraint,
     /// The digits of a spin, however small beside the speed.
     SmallSpin,
-    /// What dies out stays dead.
+    /// A motion that dies out stays dead.
     StableLine,
     /// It is its own adjoint: there and back is home.
     Symmetry,
     /// The energy to round-off, or an error.
     Energy,
-    /// What is accepted is the solution that continues the motion.
+    /// An accepted solution is the one that continues the motion.
     Continuation,
     /// A mass matrix that is regular on the constraint only.
     LightInertia,
-    /// A step that the explicit ones cannot make.
+    /// A step that explicit methods cannot make.
     Stiffness,
 }
 

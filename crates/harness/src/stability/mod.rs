@@ -21,11 +21,11 @@ pub struct Case {
     pub name: &'static str,
     /// Why it is hard.
     pub hard: &'static str,
-    /// What a correct code shows.
+    /// The result of a correct code.
     pub shows: &'static str,
     /// The bar, and what it follows from.
     pub bar: &'static str,
-    /// Who claims it.
+    /// The claim of the methods that must meet it.
     pub claim: Claim,
     /// Whether an error value is an answer: the step or the numbers are beyond what a method can do.
     pub refusable: bool,

@@ -3,7 +3,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// How many numbers of a node a case can look at.
+/// Number of values of a node that a case can look at.
 pub const VALUES: usize = 6;
 
 /// A node, as the checks see it.
@@ -11,7 +11,7 @@ pub const VALUES: usize = 6;
 pub struct Seen {
     /// Time (s).
     pub t: f64,
-    /// What the case looks at; the rest is zero.
+    /// The values that the case looks at; the rest is zero.
     pub values: [f64; VALUES],
     /// `|E - E0 - work|` (J).
     pub energy_error: f64,
@@ -24,7 +24,7 @@ pub struct Seen {
 pub struct Recorded {
     /// The nodes, the start among them.
     pub nodes: Vec<Seen>,
-    /// Why it ended early, where it did.
+    /// Why it ended early; `None` if it did not fail.
     pub failure: Option<RunError>,
     /// Whether it took longer than a case may.
     pub late: bool,
@@ -49,7 +49,7 @@ pub struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// No run of a case takes so long, on any machine and beside any other work.
+    /// No run of a case takes as long as this, on any machine and beside any other work.
     const LONGEST: Duration = Duration::from_secs(600);
 
     /// Keeps every `every`-th node, with what `look` sees in it.
@@ -87,7 +87,7 @@ impl Observer for Recorder<'_> {
         let _ = self.see(node);
     }
 
-    /// Also where a run begins that has made steps before.
+    /// Also at the beginning of a run that has made steps before.
     fn resume(&mut self, node: &View<'_>) {
         if self.recorded.nodes.is_empty() {
             self.start(node);

@@ -3,7 +3,7 @@ use dla::Hint;
 use lagrangian::Shown;
 use std::fmt;
 
-/// What a method does with a case.
+/// The outcome of a case for a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// It meets every bar.
@@ -29,9 +29,9 @@ impl fmt::Display for Outcome {
 pub struct Trial {
     /// Which run.
     pub label: String,
-    /// What was measured in its valid part.
+    /// The measurements in its valid part.
     pub findings: Vec<Finding>,
-    /// What no run may do: NaN, no end, an error that does not say what to change.
+    /// A fault that no run may have: NaN, no end, an error that does not say what to change.
     pub broken: Option<String>,
     /// The error that ended it, and what to change.
     pub error: Option<String>,
@@ -62,13 +62,13 @@ impl Trial {
         Self { label: label.into(), findings: Vec::new(), broken: broken.or(silent), error, unsupported }
     }
 
-    /// Adds what was found, where there was something to find.
+    /// Adds findings.
     pub fn add(&mut self, findings: impl IntoIterator<Item = Finding>) {
         self.findings.extend(findings);
     }
 }
 
-/// What comes of a case and a method.
+/// The verdict on a case and a method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// In a word.

@@ -57,7 +57,7 @@ fn series<S: Simd, const R: usize>(r: Pack<S, R>) -> Pack<S, R> {
     (r4 * r4).mul_add(high, low)
 }
 
-/// The coefficient of `r^k` and that of the next power, as a factor of `r^k`.
+/// The coefficients of `r^k` and of `r^(k+1)` as one factor of `r^k`.
 #[inline(always)]
 fn pair<S: Simd, const R: usize>(r: Pack<S, R>, k: usize) -> Pack<S, R> {
     r.mul_add(r.like(TERMS[k + 1]), r.like(TERMS[k]))

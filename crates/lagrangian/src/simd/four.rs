@@ -34,7 +34,7 @@ pub trait Four: Copy + Debug {
     /// `self * factor + term`, rounded once.
     #[must_use]
     fn mul_add(self, factor: Self, term: Self) -> Self;
-    /// The largest absolute value, where all are numbers.
+    /// The largest absolute value, if no number is NaN.
     #[must_use]
     fn largest(self) -> f64;
 }

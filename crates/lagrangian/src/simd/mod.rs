@@ -27,8 +27,8 @@ pub trait Kernel {
     fn run<S: Simd, const R: usize>(self, simd: S) -> Self::Output;
 }
 
-/// Runs a kernel with vector registers that multiply and add in one instruction: those of AVX-512 where the machine has them
-/// whole, else those of AVX2. None where it has none known here. Sums may be taken in another order in the one than in the other.
+/// Runs a kernel with vector registers that multiply and add in one instruction: AVX-512 if the machine has it at full width, else AVX2.
+/// Returns `None` on machines with neither. The two may take sums in different orders.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     #[cfg(target_arch = "x86_64")]
@@ -50,7 +50,7 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     None
 }
 
-/// The name of what kernels run on here, on which the last bit of results depends.
+/// The name of the instruction set that kernels use on this machine. The last bit of results depends on it.
 #[must_use]
 pub fn instructions() -> &'static str {
     struct Registers;
@@ -69,10 +69,10 @@ pub fn instructions() -> &'static str {
     }
 }
 
-/// Whether every function is compiled for the registers of a kernel, and not only what is inlined in it.
+/// Whether the build compiles every function for the registers of a kernel, and not only the code inlined in the kernel.
 #[cfg(target_arch = "x86_64")]
 pub const KNOWN_WHEN_BUILT: bool = build::NARROW || build::WIDE;
-/// Whether every function is compiled for the registers of a kernel, and not only what is inlined in it.
+/// Whether the build compiles every function for the registers of a kernel, and not only the code inlined in the kernel.
 #[cfg(not(target_arch = "x86_64"))]
 pub const KNOWN_WHEN_BUILT: bool = false;
 

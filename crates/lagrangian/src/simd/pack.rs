@@ -146,7 +146,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
-    /// The largest of the numbers, where all are numbers.
+    /// The largest of the numbers, if none is NaN.
     #[must_use]
     #[inline(always)]
     pub fn largest(&self) -> f64 {

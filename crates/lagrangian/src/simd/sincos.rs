@@ -43,7 +43,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     }
 }
 
-/// The angle, where the number of its quadrant is known.
+/// The angle; NaN if it is too large for the number of its quadrant to be known.
 #[inline(always)]
 fn within<S: Simd>(s: S, x: S::f64s) -> S::f64s {
     s.select_f64s(s.less_than_f64s(s.abs_f64s(x), s.splat_f64s(LIMIT)), x, s.splat_f64s(f64::NAN))
@@ -61,8 +61,8 @@ fn polynomial<S: Simd, const R: usize>([z, zz, zzzz]: [Pack<S, R>; 3], c: &[f64;
     zzzz.mul_add(pair[2], zz.mul_add(pair[1], pair[0]))
 }
 
-/// Sine or cosine from those of the angle within its quadrant, whose number is in the lowest bits of `shifted`; the cosine is
-/// the sine one quadrant on, `plus`.
+/// Sine or cosine of an angle, from sine and cosine of its part within a quadrant. The lowest bits of `shifted` hold the number of the
+/// quadrant; `plus` is 0 for the sine and 1 for the cosine, which is the sine one quadrant on.
 #[inline(always)]
 fn turned<S: Simd>(s: S, shifted: S::f64s, [even, odd]: [S::f64s; 2], plus: u64) -> S::f64s {
     let value = s.select_f64s(has(s, shifted, 1, 0), odd, even);

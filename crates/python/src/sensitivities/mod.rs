@@ -13,12 +13,12 @@ use std::fmt::Display;
 /// Which derivatives of a run are asked for.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct SensitivityRequest {
-    /// In what: numbers of the start and parameters, by their keys in the scene, as `start.speed`, `sleigh.mass`, `parameters.m`, or by
-    /// their names alone.
+    /// The keys to differentiate in: numbers of the start and parameters, by their keys in the scene, as `start.speed`, `sleigh.mass`,
+    /// `parameters.m`, or by their names alone.
     pub(crate) keys: Vec<String>,
-    /// Of what: columns of the run; coordinates and velocities where none are named.
+    /// The columns to differentiate; if empty, coordinates and velocities.
     pub(crate) columns: Vec<String>,
-    /// When (s), in order; at the end of the run where none are given.
+    /// The times (s), in order; if empty, the end of the run.
     pub(crate) times: Vec<f64>,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct Sensitivities {
     pub(crate) jacobian: Vec<f64>,
 }
 
-/// The directions of a block of keys: numbers carry so many at once.
+/// Number of keys in a block: as many as a number carries directions.
 const BLOCK: usize = FREE;
 
 /// The numbers of a run at some times, each with its derivatives in a block of keys.
@@ -45,7 +45,7 @@ struct SensitivityRows {
     numbers: Vec<(f64, [f64; BLOCK])>,
 }
 
-/// What is asked of a scene, for each block of keys.
+/// A request to a scene, for each block of keys.
 struct Asked<'a> {
     method: &'a Method,
     schedule: Schedule,
@@ -55,12 +55,11 @@ struct Asked<'a> {
 
 /// The derivatives of a run, at its end or at some times, in numbers of its start and in parameters.
 ///
-/// They are those of the discrete motion, exact but for round-off, as the numbers are those that [`cli::run`] gives, to the last
+/// The derivatives belong to the discrete motion and are exact but for round-off. The values are the values of [`cli::run`] to the last
 /// bit.
 ///
 /// # Errors
-/// [`Refusal`] where the request makes no sense for the scene, the method has no derivatives, a step fails, or the caller ends the
-/// run.
+/// [`Refusal`] if the request makes no sense for the scene, the method has no derivatives, a step fails, or the caller ends the run.
 pub(crate) fn sensitivities(
     scene: &AnyScene,
     request: &SensitivityRequest,

@@ -8,7 +8,7 @@ use scene::{Built, PARAMETERS, Scene, Started};
 /// The keys of the start.
 const START: [&str; 5] = ["start.x", "start.y", "start.heading", "start.speed", "start.turn_rate"];
 
-/// The columns that have derivatives; those of a rotor are told of a scene with one.
+/// The columns that have derivatives. A scene with a rotor also has the columns of the rotor.
 const COLUMNS: [&str; 5] = ["x", "y", "heading", "speed", "turn_rate"];
 const OF_ROTOR: [&str; 2] = ["rotor_angle", "rotor_rate"];
 const FURTHER: [&str; 3] = ["energy", "center_x", "center_y"];

@@ -118,7 +118,7 @@ impl<'a> Built<'a> {
             Self::Text(system) => text::quantities(system.model()),
         };
         if self.train().is_some() {
-            // Its first blade is asked for.
+            // The quantities of a train are those of its first blade.
             quantities.truncate(sleigh::IN_STATE);
         } else {
             quantities.push(Quantity { name: ENERGY.to_owned(), unit: "J".to_owned(), angle: false });
@@ -183,8 +183,8 @@ impl<'a> Built<'a> {
         }
     }
 
-    /// How far two configurations are apart (m or rad, whichever is larger): the places and headings of sleighs, or the coordinates of
-    /// systems of text.
+    /// The distance between two configurations (m or rad, whichever is larger): over places and headings for sleighs, over the
+    /// coordinates for systems of text.
     #[must_use]
     pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         match self {
@@ -193,7 +193,7 @@ impl<'a> Built<'a> {
         }
     }
 
-    /// The coordinates and the constraints of the system's own: those beyond fill up its shape.
+    /// The numbers of coordinates and constraints of the system itself, without those that pad it to a shape.
     #[must_use]
     pub fn own(&self) -> (usize, usize) {
         match self {
@@ -205,10 +205,10 @@ impl<'a> Built<'a> {
         }
     }
 
-    /// The start with a quantity that has another value, all else as nearly as the constraints admit; none where it has no such start, or no
-    /// start is given by that quantity.
+    /// The start with quantity `k` set to `value`, all else as near to `start` as the constraints admit. Returns `None` if there is no
+    /// such start, or if starts are not given by this quantity.
     ///
-    /// Places change with their quasi-velocities as they are.
+    /// A changed coordinate keeps the quasi-velocities.
     #[must_use]
     pub fn with(&self, start: &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
         match self {
@@ -235,7 +235,7 @@ impl<'a> Built<'a> {
         }
     }
 
-    /// The sleigh that it is, where it is one.
+    /// The sleigh, if the system is one.
     #[must_use]
     pub fn sleigh(&self) -> Option<&'a dyn SceneSystem> {
         match *self {
@@ -244,7 +244,7 @@ impl<'a> Built<'a> {
         }
     }
 
-    /// The train that it is, where blades follow a sleigh.
+    /// The train, if blades follow a sleigh.
     #[must_use]
     pub fn train(&self) -> Option<&'a Train> {
         self.sleigh()?.train()

@@ -18,20 +18,20 @@ pub struct SleighQuantity {
 }
 
 impl SleighQuantity {
-    /// Its value, of a sleigh in that state with its centre of mass there (m).
+    /// The value of the quantity for a sleigh in this state with this centre of mass (m).
     #[must_use]
     pub fn value(&self, state: SleighState, centre: [f64; 2]) -> f64 {
         (self.value)(&(state, centre))
     }
 
-    /// Whether values a turn apart are the same place.
+    /// Whether values that differ by a turn are the same.
     #[must_use]
     pub fn is_angle(&self) -> bool {
         self.name == "heading"
     }
 }
 
-/// The first so many tell a state.
+/// Number of leading [`QUANTITIES`] that make up a state.
 pub(super) const IN_STATE: usize = 5;
 
 /// The quantities that every sleigh has.
@@ -47,13 +47,13 @@ pub const QUANTITIES: [SleighQuantity; 9] = [
     SleighQuantity { name: "across", unit: "m", value: |seen| turned(seen)[1] },
 ];
 
-/// And those of a rotor.
+/// The quantities of a rotor, with units.
 const ROTOR: [(&str, &str); 2] = [("rotor_angle", "rad"), ("rotor_rate", "rad/s")];
 
-/// The force of the blade, to the left positive: the column of this name.
+/// The force of the blade, positive to the left: name and unit of its column.
 const FORCE: (&str, &str) = ("constraint_force", "N");
 
-/// The centre of mass, as the body sees it: its place along the blade and across it, from the origin.
+/// The centre of mass in the body's axes: its components along the blade and across it, from the origin (m).
 fn turned((at, [x, y]): &Seen) -> [f64; 2] {
     let (sin, cos) = at.heading.sin_cos();
     [x * cos + y * sin, y * cos - x * sin]
@@ -66,7 +66,7 @@ pub(super) fn quantities(system: &dyn SceneSystem) -> Vec<Quantity> {
     own.chain(rotor.iter().chain([&FORCE]).map(|(name, unit)| of(name, unit, false))).collect()
 }
 
-/// The value of a quantity, where it is one of these.
+/// The value of quantity `k` of a sleigh, its rotor or its blade; `None` beyond these.
 pub(super) fn value(system: &dyn SceneSystem, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
     if let Some(quantity) = QUANTITIES.get(k) {
         let centre = if k < IN_STATE { [0.0; 2] } else { system.centre(q) };

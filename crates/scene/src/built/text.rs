@@ -24,7 +24,7 @@ pub(super) fn in_state(model: &TextModel) -> usize {
     2 * model.coordinates().len() + model.outputs().len()
 }
 
-/// The value of a quantity, where it is one of these.
+/// The value of quantity `k`: coordinates, then rates, then outputs; `None` beyond these.
 pub(super) fn value(model: &TextModel, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
     let n = model.coordinates().len();
     match k.checked_sub(n) {
@@ -34,7 +34,7 @@ pub(super) fn value(model: &TextModel, k: usize, t: f64, q: &[f64], v: &[f64]) -
     }
 }
 
-/// The values of all of them, in their order.
+/// The values of all quantities, in their order.
 pub(super) fn values(model: &TextModel, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
     let n = model.coordinates().len();
     let (Some(q), Some(v)) = (q.get(..n), v.get(..n)) else { return Vec::new() };
@@ -56,13 +56,14 @@ pub(super) fn row(model: &TextModel, node: &Node) -> Vec<f64> {
     between(numbers, first, node.t, || [node.energy, node.work, node.constraint])
 }
 
-/// The time, what is first of a state, what is told of the motion, and the rest of the state.
+/// The time, the first `first` numbers of a state, the three numbers of `told`, and the rest of the state.
 fn between<T>(mut state: Vec<T>, first: usize, time: T, told: impl Fn() -> [T; 3]) -> Vec<T> {
     let rest = state.split_off(first.min(state.len()));
     std::iter::once(time).chain(state).chain(told()).chain(rest).collect()
 }
 
-/// A place with its quasi-velocities as they are, or a rate with the others as near as the constraints admit.
+/// The start with quantity `k` set to `value`. A changed coordinate keeps the quasi-velocities; a changed rate moves the other rates as
+/// little as the constraints admit. Returns `None` if the constraints do not admit the value.
 pub(super) fn with(system: &dyn TextMechanics, (q, v): &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
     let (model, mechanism) = (system.model(), system.mechanism());
     let Size { n: all, .. } = mechanism.size();
@@ -81,7 +82,7 @@ pub(super) fn with(system: &dyn TextMechanics, (q, v): &StartPlace, k: usize, va
     off.le(&(1e-9 * value.abs().max(1.0))).then(|| (filled(start.q, all), filled(start.v, all)))
 }
 
-/// The numbers of a start with those of the coordinates that fill up the shape of a system.
+/// The numbers of a start, with zeros for the coordinates that pad the system to its shape.
 pub(super) fn filled(mut x: Vec<f64>, all: usize) -> Vec<f64> {
     x.resize(all, 0.0);
     x

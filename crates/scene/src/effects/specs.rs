@@ -6,7 +6,7 @@ use sleigh::{ClosedPath, Formula, Ramp, SleighError, Table, TimeFunction};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TimeSpec {
-    /// The same at all times.
+    /// The same value at all times.
     Constant(f64),
     /// `amplitude sin(frequency t + phase)`.
     Sine {
@@ -70,7 +70,7 @@ impl TimeSpec {
         }
     }
 
-    /// The jumps of a formula up to that time (s); none where they are more than can be told.
+    /// The jumps of a formula up to this time (s); `None` if there are too many to find.
     pub(crate) fn jumps(&self, duration: f64) -> Option<Vec<f64>> {
         match self {
             Self::Formula(text) => {
@@ -138,7 +138,7 @@ impl PathSpec {
     /// The path.
     ///
     /// # Errors
-    /// [`SleighError`] where it cannot be followed, which one read from a file can.
+    /// [`SleighError`] if the path cannot be followed, which cannot happen to a path read from a file.
     pub fn build(&self) -> Result<ClosedPath, SleighError> {
         match &self.shape {
             PathShape::Circle { radius, center } => ClosedPath::circle(*radius, *center, self.period),
@@ -181,6 +181,6 @@ pub struct TrailersSpec {
     pub hitch: Vec<f64>,
     /// Distances of the hinges ahead of the trailers' own blades (m).
     pub bar: Vec<f64>,
-    /// Headings at the start (rad); those that are missing are that of the blade before.
+    /// Headings at the start (rad). A trailer without a heading has the heading of the blade before it.
     pub headings: Vec<f64>,
 }

@@ -10,9 +10,9 @@ pub struct EffectInfo {
     pub name: &'static str,
     /// Its keys, beside `kind`.
     pub keys: &'static [&'static str],
-    /// What it is.
+    /// What the effect does, in a few words.
     pub summary: &'static str,
-    /// Whether a scene has one of them at most, as of what is another body.
+    /// Whether a scene may have only one effect of this kind, as for effects that replace the body.
     pub only_once: bool,
     /// Reads its keys.
     pub(super) read: fn(&TomlTable<'_>) -> Result<SceneEffect, SceneError>,

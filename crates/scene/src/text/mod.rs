@@ -64,7 +64,7 @@ pub enum AnyScene {
 /// Why a scene has no system.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum BuildError {
-    /// Of a sleigh.
+    /// The error of a sleigh.
     #[error(transparent)]
     Sleigh(#[from] SleighError),
     /// Of a train.
@@ -84,7 +84,7 @@ impl AnyScene {
         Self::parse_with(text, origin, methods, &Overrides::default())
     }
 
-    /// The same with other settings of the run: only what then holds has to go together.
+    /// Parses a scene and replaces settings of its run. Consistency is checked after the replacement.
     ///
     /// # Errors
     /// As [`parse`](Self::parse), and as [`with_overrides`](Self::with_overrides).
@@ -156,7 +156,7 @@ impl AnyScene {
         }
     }
 
-    /// The same for an analysis, which has no trains.
+    /// As [`built`](Self::built), for an analysis, which has no trains.
     ///
     /// # Errors
     /// As [`built`](Self::built), and [`SleighError::Train`] of a train.
@@ -176,7 +176,7 @@ impl AnyScene {
         }
     }
 
-    /// The same with steps that go across the corners in time of a system of text, as [`TextScene::uncut`]; jumps of a sleigh stay.
+    /// The scene with steps across the corners in time of a system of text, as [`TextScene::uncut`]; jumps of a sleigh stay.
     #[must_use]
     pub fn uncut(self) -> Self {
         match self {
@@ -203,7 +203,7 @@ impl AnyScene {
         }
     }
 
-    /// The same, to be changed.
+    /// The settings of the run, mutable.
     pub fn run_mut(&mut self) -> &mut RunSettings {
         match self {
             Self::Sleigh(scene) => &mut scene.run,
@@ -230,7 +230,7 @@ impl TextScene {
         Self::parse_with(text, origin, methods, &Overrides::default())
     }
 
-    /// The same with other settings of the run: only what then holds has to go together.
+    /// Parses a scene and replaces settings of its run. Consistency is checked after the replacement.
     ///
     /// # Errors
     /// As [`parse`](Self::parse).
@@ -269,7 +269,7 @@ impl TextScene {
         fitted(&whole, self.run.step, self.jumps())
     }
 
-    /// The same with steps that go across corners in time, for what takes derivatives of steps of one length.
+    /// The scene with steps across corners in time, for derivatives of steps of one length.
     #[must_use]
     pub fn uncut(&self) -> Self {
         Self { model: Arc::new(self.model.uncut()), ..self.clone() }
@@ -295,7 +295,7 @@ impl TextScene {
         self.begun(::text::started(&self.model, &self.start))
     }
 
-    /// The same as the member of a family in some of its parameters ([`Family`]).
+    /// The scene's system as the member of a [`Family`] in some of its parameters.
     ///
     /// # Errors
     /// As [`built`](Self::built).

@@ -2,7 +2,7 @@ use super::{AnyScene, TextScene};
 use ::text::Unit;
 use serde::{Serialize, Serializer};
 
-/// A scene of a system of text as its file has it: what is no table before the tables.
+/// A scene of a system of text as its file has it: plain values before the tables.
 #[derive(Serialize)]
 struct WrittenTextFile<'s> {
     title: &'s str,

@@ -45,7 +45,7 @@ impl<B> Flywheel<B> {
     }
 }
 
-/// The coordinates of the sleigh among those of the sleigh with its rotor.
+/// The coordinates of the sleigh, without the rotor.
 #[inline(always)]
 fn of_body<S: Scalar>(all: &[S; 4]) -> [S; 3] {
     [all[0], all[1], all[2]]

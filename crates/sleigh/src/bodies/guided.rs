@@ -50,7 +50,7 @@ impl Guided<1> {
     /// The sleigh with one velocity imposed.
     ///
     /// # Errors
-    /// [`SleighError`] names what is not finite; half a tracer is refused.
+    /// [`SleighError`] names the quantity that is not finite. A tracer is refused, since it needs both velocities.
     pub fn servo(sleigh: Sleigh, guide: Guide) -> Result<Self, SleighError> {
         let guides = [match guide {
             Guide::Speed(speed) => Guide::Speed(speed.finite("speed")?),
@@ -88,7 +88,7 @@ impl Guided<2> {
 }
 
 impl<const K: usize> Guided<K> {
-    /// The same on a plane that turns at the rate `Omega` about the origin (rad/s).
+    /// The sleigh on a plane that turns at the rate `Omega` about the origin (rad/s).
     ///
     /// # Errors
     /// [`SleighError::NotFinite`].
@@ -103,7 +103,7 @@ impl<const K: usize> Guided<K> {
         Self { sleigh, ..self.clone() }
     }
 
-    /// The same with these masses, which are moved in the body, besides.
+    /// The sleigh with these moving masses added.
     #[must_use]
     pub fn carrying(mut self, masses: Vec<MovingMass>) -> Self {
         self.masses.extend(masses);

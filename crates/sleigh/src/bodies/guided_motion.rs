@@ -23,7 +23,7 @@ use crate::Guided;
 use lagrangian::{Motion, Reduced, ReducedError, Scalar, System};
 
 impl<const K: usize> Guided<K> {
-    /// `u` and `omega`, of which the quasi-velocities `xi` tell what is not imposed.
+    /// `u` and `omega`: imposed ones from the guides, free ones from the quasi-velocities `xi`.
     #[inline(always)]
     fn own<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> [S; 2] {
         if const { K == 0 } {
@@ -81,7 +81,7 @@ impl<const K: usize> Guided<K> {
         [(inertia * along + sy * about) * determinant, (sy * along + mass * about) * determinant]
     }
 
-    /// The accelerations of what is not imposed, under a force along `e` and a torque about the blade.
+    /// The accelerations of the velocities that are not imposed, under a force along `e` and a torque about the blade.
     #[inline(always)]
     fn accelerations<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3], [force, torque]: [S; 2]) -> [S; 3] {
         let zero = S::zero();

@@ -30,7 +30,7 @@ impl ClosedPath {
     /// The circle about `center` (m), counterclockwise from `center + (radius, 0)` for a positive radius (m) and period (s).
     ///
     /// # Errors
-    /// [`SleighError`] names what is not finite, or a radius or period that is not positive.
+    /// [`SleighError`] names the quantity that is not finite, or the radius or period that is not positive.
     pub fn circle(radius: f64, center: [f64; 2], period: f64) -> Result<Self, SleighError> {
         positive("radius", radius)?;
         positive("period", period)?;

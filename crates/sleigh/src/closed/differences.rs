@@ -1,10 +1,10 @@
 use lagrangian::{from_fn, mul_add};
 
-/// The values after next of `P` sequences, where their `K`th backward differences vanish. `differences`, those of the values
-/// before `x` in rows of `P`, beginning with these values, become those of `x`.
+/// Extrapolates `P` sequences by two steps, as if their `K`th backward differences vanished. `differences` has one row of `P` for each
+/// order from 0 on; it changes from the differences before `x` to the differences at `x`.
 ///
-/// What is expected is `x + 2 e_1 + .. + K e_(K-1)` with the new differences `e_j = e_(j-1) - before_(j-1)`, of which all but `x` is
-/// known: that is all that waits for `x`.
+/// The result is `x + 2 e_1 + .. + K e_(K-1)` with the new differences `e_j = e_(j-1) - before_(j-1)`. All of it but a multiple of `x`
+/// is known beforehand, so only one product waits for `x`.
 #[inline(always)]
 pub(crate) fn after_next<const P: usize>(x: [f64; P], differences: &mut [f64]) -> [f64; P] {
     let rows = differences.len() / P;

@@ -4,18 +4,17 @@ use super::half_turn::series;
 use super::heading::Heading;
 use lagrangian::from_fn;
 
-/// What a step of a map with `P` unknowns, the last of which is the mean spin, leaves to the next, which changes it in place.
+/// The numbers that a step leaves to the next, which changes them in place. The map has `P` unknowns, the last of which is the mean spin.
 #[derive(Debug)]
 pub(crate) struct Foreseen<'a, const P: usize, const KEPT: usize, const N: usize> {
-    /// Sine and cosine of the half turn of the unknowns that are expected here, these, and those expected one step later; then the
-    /// last ones and their first backward differences, `KEPT` of each in all; then what is the map's own affair. They are read where
-    /// they are used, so that until then they need no other place.
+    /// In this order: sine and cosine of the expected half turn, the unknowns expected in this step, the unknowns expected one step
+    /// later, `KEPT` rows of the last unknowns and their backward differences, and numbers of the map's own. They are read in place.
     pub(crate) numbers: &'a mut [f64; N],
     pub(crate) heading: Heading<'a>,
 }
 
 impl<'a, const P: usize, const KEPT: usize, const N: usize> Foreseen<'a, P, KEPT, N> {
-    /// What the step before has left to one that begins at this heading.
+    /// The numbers left by the step before, for a step that begins at this heading.
     #[inline(always)]
     pub(crate) fn of(memory: &'a mut Memory, heading: f64) -> Self {
         // The heading first: behind the differences, its sine would be stored with them, and its cosine be waited for, which is read
@@ -24,22 +23,22 @@ impl<'a, const P: usize, const KEPT: usize, const N: usize> Foreseen<'a, P, KEPT
         Self { numbers, heading: Heading::at(heading, direction) }
     }
 
-    /// The unknowns that are expected.
+    /// The expected unknowns.
     #[inline(always)]
     pub(crate) fn expected(&self) -> [f64; P] {
         from_fn(|i| self.numbers[2 + i])
     }
 
-    /// Sine and cosine of their half turn.
+    /// Sine and cosine of the expected half turn.
     #[inline(always)]
     pub(crate) fn half_turn(&self) -> [f64; 2] {
         [self.numbers[0], self.numbers[1]]
     }
 
-    /// Leaves to the next step what one of length `h` with the unknowns `x` does.
+    /// Stores the numbers for the next step, after a step of length `h` with the unknowns `x`.
     ///
-    /// The unknowns are expected two steps after the last ones that they are expected from, so that sine and cosine of their half turn
-    /// are there before the step between has ended.
+    /// The unknowns are extrapolated by two steps, so that sine and cosine of their half turn are computed while the step between is
+    /// still running.
     #[inline(always)]
     pub(crate) fn leave(&mut self, h: f64, x: [f64; P]) {
         let (expected, differences) = self.numbers[..2 + (2 + KEPT) * P].split_at_mut(2 + 2 * P);

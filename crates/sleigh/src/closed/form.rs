@@ -4,15 +4,14 @@ use crate::{Flywheel, Guided, Sleigh};
 use dla::ClosedStepError;
 use lagrangian::{Effect, System, With};
 
-/// A body whose step by the midpoint discrete Lagrange-d'Alembert map is known in closed form, or may be.
+/// A body whose step by the midpoint discrete Lagrange-d'Alembert map may be known in closed form.
 ///
-/// The step agrees with the general one of [`Dla`](dla::Dla) to round-off; it exists for its speed, and for the digits that a closed form
-/// keeps.
+/// The step agrees with the general step of [`Dla`](dla::Dla) to round-off, but is faster and keeps more digits.
 pub trait ClosedForm<const N: usize, const M: usize>: System<N, M> {
     /// Whether [`closed_step`](Self::closed_step) gives anything.
     fn has_closed_form(&self) -> bool;
 
-    /// One step of length `h` (s) from the time `t`; none where the general step is to be made.
+    /// One step of length `h` (s) from the time `t` (s); `None` if the general step must be made.
     fn closed_step(
         &self,
         t: f64,
@@ -26,9 +25,10 @@ pub trait ClosedForm<const N: usize, const M: usize>: System<N, M> {
         false
     }
 
-    /// The same step with one more generalised force, taken in the middle of the step at the mean velocity.
+    /// The closed step with one more generalised force, taken in the middle of the step at the mean velocity.
     ///
-    /// None where it is not known, not found quickly, or where the force may overshoot: the general step is then made.
+    /// Returns `None`, so that the general step is made, if the force is not known by hand, the solution is not found quickly, or the
+    /// force may overshoot.
     #[inline(always)]
     fn pushed_step<P: Push<N>>(
         &self,
@@ -68,7 +68,7 @@ impl ClosedForm<3, 1> for Sleigh {
     }
 }
 
-/// Nothing is known of it in closed form.
+/// No closed form is known.
 impl<const K: usize, const M: usize> ClosedForm<3, M> for Guided<K>
 where
     Self: System<3, M>,
@@ -89,7 +89,7 @@ where
     }
 }
 
-/// On a free bearing the body's own, and the rotor keeps its absolute rate.
+/// On a free bearing: the closed form of the body, while the rotor keeps its absolute rate.
 impl<B: ClosedForm<3, M>, const M: usize> ClosedForm<4, M> for Flywheel<B> {
     #[inline(always)]
     fn has_closed_form(&self) -> bool {

@@ -1,34 +1,33 @@
 use lagrangian::{added, mul_add, sin_cos_wrapped};
 
-/// By how much an angle may differ from the one that a direction was turned to (rad): a few roundings.
+/// Largest difference between the angle of a state and the angle of the direction that counts as equal (rad): a few roundings.
 const SAME: f64 = 23.5 * f64::EPSILON;
-/// By how much less after every step, and for every radian: nothing is left after a hundred steps, or a turn of four radians. What
-/// rounding does to a direction is in proportion to how far it was turned.
+/// Decrease of that difference with every step, and with every radian of turn: nothing is left after a hundred steps or four radians. The
+/// rounding error of a direction is in proportion to how far the direction was turned.
 const WORN: f64 = 0.2 * f64::EPSILON;
 const WORN_BY_TURNING: f64 = 6.0 * f64::EPSILON;
 
-/// The direction of the blade where a step begins. It is turned along with every step, and its sine and cosine are worked out anew
-/// after some.
+/// The direction of the blade at the start of a step. Every step turns it along, and its sine and cosine are computed anew from time to
+/// time.
 ///
-/// They are sums of many small numbers, so their rounding errors are kept and added again (compensated summation).
+/// Sine and cosine are sums of many small numbers, so their rounding errors are kept and added again (compensated summation).
 #[derive(Debug)]
 pub(crate) struct Heading<'a> {
     angle: f64,
-    /// How much more it is than the angle that the direction was turned to: rounding, since the angle of a state is a sum with a rest,
-    /// which is not known here.
+    /// `angle` less the angle of the direction: rounding, since the angle of a state is a sum whose rest is not known here.
     off: f64,
     numbers: &'a mut HeadingNumbers,
 }
 
-/// What is remembered of it: the angle that it was turned to, sine and cosine, their rests, and by how much the angle of a state may
-/// differ.
+/// The numbers kept between steps: angle of the direction, sine, cosine, the rests of sine and cosine, and the difference allowed to the
+/// angle of a state.
 pub(crate) type HeadingNumbers = [f64; 6];
 
-/// None.
+/// The numbers before the first step.
 pub(crate) const NO_HEADING: HeadingNumbers = [f64::NAN; 6];
 
 impl<'a> Heading<'a> {
-    /// The direction at an angle: that at the end of the step before, if this is where that ended.
+    /// The direction at an angle. It is kept from the end of the step before if the angles agree, else computed anew.
     #[inline(always)]
     pub(crate) fn at(angle: f64, numbers: &'a mut HeadingNumbers) -> Self {
         let same = (angle - numbers[0]).abs() <= numbers[5];
@@ -44,8 +43,8 @@ impl<'a> Heading<'a> {
         [self.numbers[1], self.numbers[2]]
     }
 
-    /// Turns it by an angle, that is by a chord across the direction in the middle, of which one may be longer where the other is
-    /// shorter; sine and cosine there.
+    /// Turns the direction by `angle`, and returns the new sine and cosine. The chord of the turn is `chord` times the direction across
+    /// `[sin_m, cos_m]`, the direction in the middle, whose length need not be one.
     #[inline(always)]
     pub(crate) fn turn(&mut self, angle: f64, chord: f64, [sin_m, cos_m]: [f64; 2]) -> [f64; 2] {
         let [_, sin, cos, rest_of_sin, rest_of_cos, slack] = *self.numbers;
@@ -76,8 +75,8 @@ mod tests {
 
     const STEPS: u32 = 2000;
 
-    /// How far sine and cosine ever are from those of the angle, over as many turns, and how often they were worked out anew. What is
-    /// added to the angle after each is `stray`, in ulps of a radian, to one side and to the other.
+    /// The largest error of sine and cosine over `STEPS` turns, and how often they were computed anew. After each turn the angle strays
+    /// by up to `stray` ulps of a radian, to either side.
     fn turned(turn: f64, stray: f64) -> (f64, u32) {
         let (mut numbers, mut angle, mut worst, mut anew) = (NO_HEADING, 0.3_f64, 0.0_f64, 0);
         let half = 0.5 * turn;

@@ -56,8 +56,8 @@ impl Matrix {
 }
 
 impl<'a> MeanEquations<'a> {
-    /// Of a step of length `h` from the time `t`, the place `q` with this sine and cosine of the heading, and the velocities
-    /// `start`.
+    /// The equations of a step of length `h` (s) from the time `t` (s), the configuration `q` with this sine and cosine of the heading,
+    /// and the velocities `start`.
     #[inline(always)]
     pub(crate) fn new(
         sleigh: &'a Sleigh,
@@ -70,7 +70,7 @@ impl<'a> MeanEquations<'a> {
         Self { sleigh, t, h, q, start, heading, gains }
     }
 
-    /// The middle of the step: sine and cosine of the heading there, which is that of the chord, and the configuration.
+    /// The middle of the step: sine and cosine of its heading, which is the heading of the chord, and the configuration.
     #[inline(always)]
     fn middle(&self, [speed, w]: [f64; 2], half_turn: [f64; 2]) -> ([f64; 2], [f64; 3]) {
         let half = 0.5 * self.h;

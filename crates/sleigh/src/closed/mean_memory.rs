@@ -3,17 +3,17 @@ use super::foreseen::Foreseen;
 use super::half_turn::half_turn;
 use super::heading::NO_HEADING;
 
-/// As many differences of the mean velocities are kept, with the last ones themselves.
+/// Number of backward differences of the mean velocities that are kept; the first are the last mean velocities themselves.
 const KEPT: usize = 8;
 const SIZE: usize = 6 + 2 * KEPT;
-/// Tells these numbers, in this order, from those of other maps and orders: a checkpoint may be older.
+/// Identifies these numbers and their order. A checkpoint may come from an older version or another map.
 const KIND: f64 = 6.0;
 
-/// What a step of the pushed map leaves to the next.
+/// The numbers that a step of the pushed map leaves to the next.
 pub(crate) type MeanMemory<'a> = Foreseen<'a, 2, KEPT, SIZE>;
 
-/// What steps of length `h` have left to one that begins at this heading with the velocities `x`; before a first one, as after many
-/// that had these. None where the blade would then turn by a right angle in half the step.
+/// The numbers left by steps of length `h`, for a step that begins at this heading with the velocities `x`. If there are none, they are
+/// as after many steps with the velocities `x`; `None` if the blade would then turn by a right angle in half the step.
 #[inline(always)]
 pub(crate) fn remembered(memory: &mut Memory, h: f64, heading: f64, x: [f64; 2]) -> Option<MeanMemory<'_>> {
     if !memory.is_of(h, KIND) {

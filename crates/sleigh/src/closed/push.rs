@@ -2,10 +2,10 @@ use lagrangian::{Effect, Scalar, With, called};
 
 /// A generalised force.
 pub trait Push<const N: usize> {
-    /// The force at `(t, q, v)`; none where it is not known by hand.
+    /// The force at `(t, q, v)`; `None` if it is not known by hand.
     fn push<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>;
 
-    /// The part of it that may depend on the velocity; none where there is none.
+    /// The part of the force that may depend on the velocity; `None` if there is none.
     fn brake<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>;
 }
 

@@ -6,7 +6,7 @@ use super::{ClosedStart, ClosedStep, Push};
 use crate::Sleigh;
 use lagrangian::{from_fn, mul_add};
 
-/// A turn in one step (rad) beyond which the general step looks for what continues the motion.
+/// A turn in one step (rad) beyond which the general step decides which solution continues the motion.
 const NEAR: f64 = 1.0;
 /// A part of the velocities by which Newton's correction may change them and leave rounding: what it leaves is the square of that
 /// part, by the part of themselves by which the derivatives change along the step.
@@ -15,13 +15,13 @@ const SLIGHT: f64 = 1e-8;
 const CONTRACTION: f64 = 0.25;
 /// Rounding of an equation, relative to the sum of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
-/// The square of an angle this small is rounding.
+/// Angles whose square is rounding (rad).
 const SMALL: f64 = 1e-8;
 /// A part of the velocities by which expected ones may differ from those before.
 const FAR: f64 = 0.125;
 /// Corrections below this part of the velocities are rounding.
 const NOISE: f64 = 1e-11;
-/// As many of Newton's corrections, each with two simplified ones after it, before the general step is made.
+/// Maximum number of Newton's corrections, each with two simplified ones after it, before the general step is made.
 const MOST: u32 = 4;
 
 /// One step of the midpoint discrete Lagrange-d'Alembert map of a sleigh that is pushed, reduced to two unknowns.
@@ -34,9 +34,9 @@ const MOST: u32 = 4;
 /// U cos d + a w sin d = u1 - h/(2m) (f_e cos d + f_n sin d),    w (1 - k U) = omega1 - h/(2J) tau    at the end:
 /// ```
 ///
-/// those of the free sleigh, with the impulse of half a step at each end. They are solved from velocities that those before the last
-/// ones lead to, where one of Newton's corrections is enough. None where the corrections do not contract or settle, where the blade
-/// turns far, or where the equations are no longer those of a short step: the general step then decides.
+/// These are the equations of the free sleigh with the impulse of half a step at each end. They are solved from velocities extrapolated
+/// from earlier steps, from which one of Newton's corrections is mostly enough. Returns `None`, and leaves the step to the general
+/// method, if the corrections do not contract or settle, if the blade turns far, or if the step is too long for these equations.
 #[inline(always)]
 pub(crate) fn step<P: Push<3>>(
     sleigh: &Sleigh,

@@ -36,14 +36,14 @@ pub(crate) struct SpinPoint {
 }
 
 impl SpinEquation {
-    /// Of a step of length `h`.
+    /// The equation of a step of length `h` (s).
     #[inline(always)]
     pub(crate) fn new(sleigh: &Sleigh, h: f64) -> Self {
         let (half, a, gain) = (0.5 * h, sleigh.offset(), sleigh.spin_gain());
         Self { half, a, k: half * gain, bend: mul_add(gain, a, 1.0) }
     }
 
-    /// The same for the part `r = w/unit` of a spin `unit`, which begins with one: `d = (h unit/2) r` and `a w = (a unit) r`.
+    /// The equation for the ratio `r = w/unit`, which starts at one: `d = (h unit/2) r` and `a w = (a unit) r`.
     #[inline]
     pub(crate) fn in_units_of(self, unit: f64) -> Self {
         Self { half: self.half * unit, a: self.a * unit, ..self }
@@ -56,7 +56,7 @@ impl SpinEquation {
         half_turn(self.half * w).map(|half_turn| self.point(w, half_turn))
     }
 
-    /// The same with the sine and cosine of the half turn.
+    /// As `at`, with known sine and cosine of the half turn.
     #[inline(always)]
     pub(crate) fn point(&self, w: f64, (sin, cos): (f64, f64)) -> SpinPoint {
         let Self { half, a, k, .. } = *self;

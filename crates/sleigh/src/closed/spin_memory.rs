@@ -2,22 +2,23 @@ use super::Memory;
 use super::foreseen::Foreseen;
 use super::heading::NO_HEADING;
 
-/// As many differences of the spins are kept, with the last one itself.
+/// Number of backward differences of the spin that are kept; the first is the last spin itself.
 const KEPT: usize = 6;
-/// Behind them the last spin that was too small to have digits of its own: as it was rounded, and with them.
+/// Place of the last spin that was too small for a full significand: first as rounded, then times `LARGER`, with its digits.
 const WITH_DIGITS: usize = 4 + KEPT;
 const SIZE: usize = WITH_DIGITS + 2;
-/// Tells these numbers, in this order, from those of other maps and orders: a checkpoint may be older.
+/// Identifies these numbers and their order. A checkpoint may come from an older version or another map.
 const KIND: f64 = 5.0;
-/// So much larger a spin is kept with its digits: the least number there is then has them all.
+/// Factor by which a small spin is scaled to be kept with its digits: the smallest positive number then has a full significand.
 const LARGER: f64 = (1u128 << 100) as f64;
 
-/// What a step of the closed map leaves to the next.
+/// The numbers that a step of the closed map leaves to the next.
 pub(crate) type SpinMemory<'a> = Foreseen<'a, 1, KEPT, SIZE>;
-/// The numbers of it, without the heading.
+/// The numbers of `SpinMemory` without the heading.
 pub(crate) type SpinNumbers = [f64; SIZE];
 
-/// What steps of length `h` have left to one that begins at this heading; before a first one nothing, as after many of the spin `w`.
+/// The numbers left by steps of length `h`, for a step that begins at this heading. If there are none, they are as after steps with the
+/// spin `w`.
 #[inline(always)]
 pub(crate) fn remembered(memory: &mut Memory, h: f64, (heading, w): (f64, f64)) -> SpinMemory<'_> {
     if !memory.is_of(h, KIND) {
@@ -43,8 +44,8 @@ fn kept(numbers: &SpinNumbers) -> [f64; 2] {
     [numbers[WITH_DIGITS], numbers[WITH_DIGITS + 1]]
 }
 
-/// The spin `omega` with the digits that are kept of it, times a factor: as much of it as a number holds. With none where another spin
-/// was kept. Nothing else is remembered, so that the next step searches, too.
+/// The spin `omega` times a factor, rounded from the digits that are kept of `omega`; from `omega` itself if another spin was kept. All
+/// other numbers are forgotten, so that the next step searches too.
 pub(crate) fn with_digits(numbers: &mut SpinNumbers, omega: f64, factor: f64) -> f64 {
     let [rounded, larger] = kept(numbers);
     let larger = factor * if rounded.to_bits() == omega.to_bits() { larger } else { omega * LARGER };

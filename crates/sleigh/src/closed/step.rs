@@ -1,27 +1,27 @@
 use super::Memory;
 
-/// Where a step in closed form begins, and what is known there. Whatever is remembered, the step is the same to round-off.
+/// The start of a step in closed form. The numbers of `memory` change the step by round-off at most.
 #[derive(Debug)]
 pub struct ClosedStart<'a, const N: usize> {
     /// The configuration.
     pub q: &'a [f64; N],
     /// The velocity.
     pub v: &'a [f64; N],
-    /// The same velocity in the system's basis of admissible velocities, where it is known: either may be read.
+    /// The same velocity in the system's basis of admissible velocities, if known. A step may read either.
     pub xi: Option<[f64; N]>,
-    /// What the step before has left, and where this one leaves what the next may need. What a step leaves that fails is of no use.
+    /// Numbers left by the step before, replaced by numbers for the next step. After a step that fails they are of no use.
     pub memory: &'a mut Memory,
 }
 
 impl<'a, const N: usize> ClosedStart<'a, N> {
-    /// Configuration, velocity, and what is remembered.
+    /// A start with this configuration, velocity and memory.
     #[must_use]
     pub fn new(q: &'a [f64; N], v: &'a [f64; N], memory: &'a mut Memory) -> Self {
         Self { q, v, xi: None, memory }
     }
 }
 
-/// What a step in closed form gives.
+/// The result of a step in closed form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosedStep<const N: usize, const M: usize> {
     /// The increment `q1 - q0`.

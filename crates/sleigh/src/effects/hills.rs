@@ -25,7 +25,7 @@ impl Hills {
     /// The landscape of these hills.
     ///
     /// # Errors
-    /// [`SleighError`] names what is not finite, or a width that is not positive.
+    /// [`SleighError`] names the quantity that is not finite, or the width that is not positive.
     pub fn new(hills: Vec<Hill>) -> Result<Self, SleighError> {
         for hill in &hills {
             finite("height", [hill.height])?;

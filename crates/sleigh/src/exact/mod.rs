@@ -23,10 +23,10 @@ use std::f64::consts::PI;
 /// for either sign of `a`; `a = 0` gives a circle and `omega0 = 0` a straight line. The centre of mass swings from
 /// behind the direction of travel to ahead of it, once, and the blade's path has a cusp where `u = 0`.
 ///
-/// The relative errors of `omega` and of the change of `theta`, and the error of `u` relative to `U`, are near rounding
-/// for spins and offsets however small and times however long. So is that of the displacement relative to the length of
-/// the path, but for the rounding of the angle itself once the blade has turned many times. The cost of
-/// [`at`](Self::at) depends neither on the time nor on the number of turns.
+/// The relative errors of `omega` and of the change of `theta`, and the error of `u` relative to `U`, are near rounding for spins and
+/// offsets however small and times however long. The same holds for the error of the displacement relative to the length of the path,
+/// but for the rounding of the angle itself once the blade has turned many times. The cost of [`at`](Self::at) depends neither on the
+/// time nor on the number of turns.
 ///
 /// S. A. Chaplygin, On the theory of motion of nonholonomic systems: the reducing-multiplier theorem, 1911;
 /// Ju. I. Neimark and N. A. Fufaev, Dynamics of Nonholonomic Systems, 1972; A. M. Bloch, Nonholonomic Mechanics and

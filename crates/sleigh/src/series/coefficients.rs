@@ -36,7 +36,7 @@ impl<F: Four> SeriesEquations<F> {
     }
 }
 
-/// The coefficients `z_k` of `z(t + s) = sum_k z_k s^k`, with those of `y` and `omega`.
+/// The coefficients `z_k` of `z(t + s) = sum_k z_k s^k`, with the coefficients of `y` and `omega`.
 ///
 /// `(k + 1) z_{k+1} = damped o z_k + linear o P z_k + sum_j omega_j y_{k-j}`. (Jorba and Zou 2005, Experimental Mathematics 14, 99-117, section 2.)
 pub(super) struct SeriesTerms<F> {
@@ -51,7 +51,7 @@ impl<F: Four> SeriesTerms<F> {
         Self { z: [zero; ORDER + 1], y: [zero; ORDER], omega: [0.0; ORDER + 4] }
     }
 
-    /// The series about `z`; where nothing is damped, without the term.
+    /// Computes the series about `z`. Without damping, the damping term is left out.
     #[inline(always)]
     pub(super) fn expand<const DAMPED: bool>(&mut self, equations: &SeriesEquations<F>, z: F) {
         macro_rules! orders {
@@ -66,10 +66,10 @@ impl<F: Four> SeriesTerms<F> {
         orders!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19);
     }
 
-    /// `z_{K+1}` from `z = z_K` and those before, where `start` is `y_0` and `turned omega_0`.
+    /// `z_{K+1}` from `z = z_K` and the coefficients before it; `start` is `y_0` and `turned omega_0`.
     ///
-    /// Every coefficient waits for the one before, so that what is known earlier is summed earlier: in the sum the middle comes first
-    /// and the newest last, and nothing but two products waits for `z`.
+    /// Every coefficient waits for the one before. The sum therefore starts with the middle terms, which are known first, and ends with the
+    /// newest ones, so that only two products wait for `z`.
     #[inline(always)]
     fn next<const K: usize, const DAMPED: bool>(
         &mut self,

@@ -9,20 +9,20 @@ use std::ops::ControlFlow;
 /// An interval to be crossed.
 pub(crate) struct SeriesCrossing<'a, See> {
     pub(crate) axes: OwnAxes,
-    /// `(omega, u, Y, X)` at its beginning.
+    /// `(omega, u, Y, X)` at the start of the interval.
     pub(crate) start: [f64; 4],
-    /// Its length (s).
+    /// Length of the interval (s).
     pub(crate) whole: f64,
     /// The error of a step, in units of `1 + |(omega, u)|`.
     pub(crate) tolerance: f64,
-    /// Parts of every step at which it is looked at besides.
+    /// Fractions of every step at which `see` is called too.
     pub(crate) within: &'a [f64],
-    /// Looks at these parts of each step, and at where it ends within the interval, so long after its beginning (s); a `Break` at an end ends
-    /// the crossing there.
+    /// Called with the time since the start of the interval (s) and the state: at the `within` fractions of each step, and at the end of
+    /// every step but the last. A `Break` at the end of a step ends the crossing there.
     pub(crate) see: See,
 }
 
-/// Where it ends.
+/// The state after a crossing, or at a point of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SeriesEnd {
     /// `(omega, u, Y, X)`.
@@ -31,7 +31,7 @@ pub(crate) struct SeriesEnd {
     pub(crate) turn: f64,
 }
 
-/// Steps within an interval before it is given up.
+/// Maximum number of steps in an interval.
 pub(crate) const MAX_STEPS: u32 = 10_000_000;
 
 impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> FourKernel for SeriesCrossing<'_, See> {

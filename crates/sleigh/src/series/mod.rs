@@ -24,39 +24,39 @@ use std::ops::ControlFlow;
 /// on the constraint by construction. The method is explicit: neither symmetric nor variational, and it keeps energy and momenta to
 /// its tolerance only. For long runs see [`Gauss`](dla::Gauss).
 ///
-/// It has the equations of the body that it is made of, and is to be driven on this body.
+/// The method holds the equations of its body, and must be driven on this body.
 ///
 /// (Jorba and Zou 2005, Experimental Mathematics 14, 99-117.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Taylor {
     axes: OwnAxes,
     tolerance: f64,
-    /// What does work that is to be reported.
+    /// The effects whose work is reported.
     sources: PowerSources,
 }
 
 impl Taylor {
     /// The order of the method.
     pub const ORDER: usize = coefficients::ORDER;
-    /// Steps within an interval before it is given up.
+    /// Maximum number of steps in an interval.
     pub const MAX_STEPS: u32 = MAX_STEPS;
 
-    /// The method for this body with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |(u, omega)|)`, as far as
-    /// the terms of the series fall off evenly. Rounding is larger where it is below some `1e-15`; it is taken to be no less than
-    /// `1e-31`. None where the body has no such equations.
+    /// The method for this body with the tolerance `epsilon`, which is raised to at least `1e-31`. The error of a step is kept near
+    /// `epsilon (1 + |(u, omega)|)`, if the terms of the series fall off evenly. Below some `1e-15` rounding is larger than the tolerance.
+    /// Returns `None` if the body has no equations in own axes.
     #[must_use]
     pub fn of(body: &impl InOwnAxes, epsilon: f64) -> Option<Self> {
         Some(Self::in_axes(body.own_axes()?, epsilon))
     }
 
-    /// The same of these equations.
+    /// The method for these equations with the tolerance `epsilon`.
     #[must_use]
     pub fn in_axes(axes: OwnAxes, epsilon: f64) -> Self {
         Self { axes, tolerance: epsilon, sources: PowerSources::NONE }
     }
 }
 
-/// So many nodes of a step have the order of the series, and more.
+/// Number of Gauss nodes in a step: their quadrature has at least the order of the series.
 const WITHIN: usize = 10;
 
 /// Where a step begins.

@@ -75,7 +75,7 @@ impl OwnAxes {
         self.damping.iter().any(|rate| *rate != 0.0)
     }
 
-    /// The same body, pushed; none where the push is counted from elsewhere.
+    /// The equations with a push added; `None` if the push is counted from another centre.
     #[must_use]
     pub fn pushed(self, push: OwnPush) -> Option<Self> {
         let [per_mass, per_inertia] = self.inverse;
@@ -88,16 +88,16 @@ impl OwnAxes {
     }
 }
 
-/// A body whose reduced equations are of second degree in axes that turn with it, or may be.
+/// A body whose reduced equations may be of second degree in axes that turn with the body.
 pub trait InOwnAxes {
-    /// The equations, the reduced ones of the body ([`System::reduced`](lagrangian::System::reduced)) in other words; none
-    /// where they are not of this form.
+    /// The reduced equations of the body ([`System::reduced`](lagrangian::System::reduced)) in these axes; `None` if they are not of
+    /// second degree.
     fn own_axes(&self) -> Option<OwnAxes>;
 }
 
-/// An effect whose force may be of the first degree, and constant in time, in axes that turn with a body.
+/// An effect whose force may be constant in time and of first degree, in axes that turn with the body.
 pub trait PushInOwnAxes<B> {
-    /// The force; none where it is not of this form.
+    /// The force; `None` if it is not of this form.
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
         None
     }

@@ -2,33 +2,33 @@ use super::coefficients::ORDER;
 use lagrangian::linear::larger;
 use lagrangian::{octaves, of_octaves, two_sum};
 
-/// A step is as long as this term and the one before allow, since the last ones come late.
+/// The term of the series that, with the one before it, limits the length of a step; the later terms are computed too late.
 pub(crate) const LOOKED_AT: usize = ORDER - 2;
-/// Where they are of the size of the error's power of this, terms that fall off evenly leave the error.
+/// If this term is the tolerance to this power, terms that fall off evenly leave an error of the tolerance.
 const POWER: f64 = LOOKED_AT as f64 / (ORDER + 1) as f64;
-/// And the last term has this power.
+/// Power of the tolerance at which the last term may stand: `ORDER/(ORDER+1)`.
 const LAST: f64 = ORDER as f64 / (ORDER + 1) as f64;
-/// By how many octaves it may be larger.
+/// Octaves by which the last term may be larger.
 const SLACK: f64 = 3.0;
-/// Where it is larger still, the step is shortened by this factor.
+/// Factor that shortens the step if the last term is larger still.
 const SHORTER: f64 = 0.75;
 
 /// How long steps may be, by the terms of their series.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SeriesPace {
-    /// The octaves of the error of a step, in units of `1 + |(omega, u)|`.
+    /// The tolerance of a step in octaves; the error is in units of `1 + |(omega, u)|`.
     tolerance: f64,
 }
 
 impl SeriesPace {
-    /// At this error of a step, which is taken to be no less than `1e-31`, also where it is no number.
+    /// The pace for this error of a step, raised to at least `1e-31`, also if it is NaN.
     #[inline(always)]
     pub(crate) fn new(tolerance: f64) -> Self {
         Self { tolerance: octaves(tolerance.max(1e-31)) }
     }
 
-    /// The length of a step (s) with velocities of this size at its beginning and largest coefficients of these sizes: those of the
-    /// term that is looked at, of the one before, and of the last. It is positive, or no number.
+    /// The longest step (s), positive or NaN, from the size of the velocities at its start and the largest coefficients of three terms:
+    /// `LOOKED_AT`, the one before it, and the last.
     #[inline(always)]
     pub(crate) fn longest(&self, velocity: f64, [looked_at, before, last]: [f64; 3]) -> f64 {
         let size = octaves(1.0 + velocity);
@@ -43,7 +43,7 @@ impl SeriesPace {
     }
 }
 
-/// The size of velocities.
+/// The larger of `|omega|` and `|u|`.
 #[inline(always)]
 pub(crate) fn size(omega: f64, u: f64) -> f64 {
     larger(omega.abs(), u.abs())
@@ -53,19 +53,19 @@ pub(crate) fn size(omega: f64, u: f64) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Interval {
     whole: f64,
-    /// The sum of the steps, with its rounding.
+    /// The sum of the steps made (s), with its rounding error.
     made: (f64, f64),
 }
 
 impl Interval {
-    /// Of this length (s), which may be negative.
+    /// An interval of length `whole` (s), which may be negative.
     #[inline(always)]
     pub(crate) fn new(whole: f64) -> Self {
         Self { whole, made: (0.0, 0.0) }
     }
 
-    /// Goes on by a step that may be as long as `full`: its length, and whether it is the last. None where it would be nothing beside
-    /// the interval, or no number.
+    /// Makes a step of at most `full` (s). Returns its signed length, and true for the last step. Returns `None` if `full` is NaN or
+    /// rounding beside the interval.
     #[inline(always)]
     pub(crate) fn go_on(&mut self, full: f64) -> Option<(f64, bool)> {
         let rest = (self.whole - self.made.0) - self.made.1;
@@ -79,7 +79,7 @@ impl Interval {
         self.made = two_sum(self.made.0, self.made.1 + h);
         Some((h, false))
     }
-    /// How far it has come (s).
+    /// The sum of the steps made (s).
     #[inline(always)]
     pub(crate) fn made(&self) -> f64 {
         self.made.0

@@ -28,13 +28,13 @@ struct FormulaPieces {
 #[derive(Debug)]
 struct FormulaTapes(Vec<Tape>);
 
-/// Derivatives of a higher order are not formulas, but [`Series`]: those for the equations of motion are.
+/// Number of derivatives that get formulas: the equations of motion need no more. Derivatives of higher order come from [`Series`].
 const FORMULAS: usize = 2;
 
-/// The most numbers that a formula may need at a time: they lie on the stack.
+/// Maximum number of intermediate results that a formula may need at a time: they lie on the stack.
 const ROOM: usize = 128;
 
-/// A formula has at most so many terms and factors, and its derivatives so many more.
+/// Maximum number of terms and factors of a formula, and the further number that its derivatives may have.
 const LARGEST: usize = 1 << 17;
 const DERIVED: usize = 1 << 13;
 
@@ -42,7 +42,7 @@ impl Formula {
     /// The function with this text.
     ///
     /// # Errors
-    /// [`SleighError::Formula`] where the text is no formula in `t`, needs too many numbers at a time, or has no finite value at
+    /// [`SleighError::Formula`] if the text is no formula in `t`, needs too many numbers at a time, or has no finite value at
     /// `t = 0`.
     pub fn new(text: &str) -> Result<Self, SleighError> {
         let fail = |problem: String| SleighError::Formula { problem };
@@ -70,19 +70,19 @@ impl Formula {
         &self.text
     }
 
-    /// Whether `t` does not stand in it.
+    /// Whether the formula does not contain `t`.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         self.constant
     }
 
-    /// The times between two (s) at which it has a corner or jumps; none where they are more than can be told.
+    /// The times in an interval (s) at which the formula has a corner or jumps; `None` if there are too many to find.
     #[must_use]
     pub fn corners(&self, from: f64, to: f64) -> Option<Vec<f64>> {
         self.pieces.as_ref().map_or(Some(Vec::new()), |pieces| pieces.corners.between(from, to))
     }
 
-    /// Whether it has a corner or jumps, at a time that anybody may reach.
+    /// Whether the formula has a corner or jumps within 1e4 s of `t = 0`; also true if there are too many to find.
     #[must_use]
     pub fn has_corners(&self) -> bool {
         const FAR: f64 = 1e4;
@@ -167,7 +167,7 @@ impl Piecewise for Formula {
     }
 }
 
-/// Of the same text are the same derivatives.
+/// Formulas with the same text have the same derivatives.
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text && self.sides == other.sides

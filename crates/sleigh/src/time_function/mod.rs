@@ -16,7 +16,7 @@ use lagrangian::{Piecewise, Scalar};
 /// A function of time: a force, a torque, a position.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TimeFunction {
-    /// The same at all times.
+    /// The same value at all times.
     Constant(f64),
     /// `amplitude sin(frequency t + phase)`.
     Sine {
@@ -109,7 +109,7 @@ impl TimeFunction {
         curvature.carried_as(t)
     }
 
-    /// Value, slope and second derivative at `t`: those of a sine share their sine and cosine.
+    /// Value, slope and second derivative at `t`. A sine computes its sine and cosine once for all three.
     #[inline(always)]
     pub(crate) fn jet<S: Scalar>(&self, t: S) -> [S; 3] {
         match self {

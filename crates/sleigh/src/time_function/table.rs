@@ -17,7 +17,7 @@ impl Table {
     /// The table of these times (s), increasing, and as many values.
     ///
     /// # Errors
-    /// [`SleighError::Table`] where it is empty, of two lengths, not increasing or not finite.
+    /// [`SleighError::Table`] if the table is empty, its columns differ in length, its times do not increase, or a number is not finite.
     pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, SleighError> {
         checked(&times, &values)?;
         Ok(Self { times: times.into(), values: values.into(), current: 0 })
@@ -63,7 +63,7 @@ pub(super) fn begun(times: &[f64], t: f64) -> usize {
     times.partition_point(|time| *time <= t)
 }
 
-/// Refuses what is not a table: empty, of two lengths, not increasing or not finite.
+/// Refuses a table that is empty, has columns of different lengths, times that do not increase, or a number that is not finite.
 pub(super) fn checked(times: &[f64], values: &[f64]) -> Result<(), SleighError> {
     let fail = |problem| Err(SleighError::Table { problem });
     if times.is_empty() {

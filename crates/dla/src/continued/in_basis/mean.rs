@@ -42,7 +42,7 @@ pub(super) fn mean<D: Discretisation<N, M>, const N: usize, const M: usize>(
     let d = correction(&at);
     let xi = from_fn(|a| xi[a] - d[a]);
     let v = w.combine(&xi);
-    // The correction of the mean velocity at which the nodes are placed, and that of the quasi-velocities.
+    // The correction of the mean velocity that places the nodes, plus the correction from the quasi-velocities.
     let size = sup(&from_fn::<f64, N, _>(|i| (v[i] - way[i]).abs() + (v[i] - guess[i]).abs()));
     let large = sup(&v);
     if size > SHRINKING * large {

@@ -1,5 +1,5 @@
 //! The predicted step in the basis of admissible velocities, `v = W xi`: there are no multipliers to eliminate, and the Jacobian hardly
-//! changes where the basis turns with a body.
+//! changes if the basis turns with a body.
 
 mod arrival;
 mod mean;
@@ -21,7 +21,7 @@ struct InBasis<const N: usize, const M: usize> {
     xi: [f64; N],
 }
 
-/// The first places of a row.
+/// The first `N` entries of a row.
 #[inline(always)]
 fn first<const N: usize>(row: [f64; COORDINATES]) -> [f64; N] {
     from_fn(|i| row[i])
@@ -108,7 +108,7 @@ mod tests {
         State::new(q, v, [false, false, true])
     }
 
-    /// Steps change to the basis where the mass matrix turns with a body; not where it is constant, nor where multipliers are asked for.
+    /// Steps change to the basis if the mass matrix turns with a body, but not if it is constant or if multipliers are asked for.
     #[test]
     fn a_run_goes_on_in_the_basis_where_derivatives_last_longer_in_it() {
         let (mut turning, mut asked) = (method(), Dla::midpoint().solved(Form::Multipliers));
@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(state, expected);
     }
 
-    /// The memory is part of a checkpoint, to the last bit; where it is damaged, the step is made without it.
+    /// The memory is part of a checkpoint, to the last bit; if it is damaged, the step is made without it.
     #[test]
     fn a_run_is_resumed_in_the_basis() {
         let (mut method, mut state) = (method(), start());

@@ -1,19 +1,19 @@
 /// Why crossings may have been missed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Close {
-    /// How many crossings follow another of the same event so closely that there may be more between them.
+    /// Number of crossings that follow another of the same event so closely that there may be more between them.
     pub count: u64,
-    /// The largest spacing of the samples by which these were found (s).
+    /// The largest spacing of the samples that found these crossings (s).
     pub spacing: f64,
-    /// How near the nearest two of them are (s).
+    /// The smallest distance between two of them (s).
     pub nearest: f64,
-    /// How often a step, or one of those that a method makes of its own, was not seen as a whole: an event had no value at a sample, a
+    /// Number of times that a step, or one that a method makes of its own, was not seen as a whole: an event had no value at a sample, a
     /// shorter step had no solution, or the event changes more quickly than the samples show.
     pub unseen: u64,
 }
 
 impl Close {
-    /// The same with so many steps that were not seen as a whole; none where there is no doubt.
+    /// Adds `unseen` steps that were not seen as a whole; `None` if there is no doubt.
     #[must_use]
     pub fn with_unseen(close: Option<Self>, unseen: u64) -> Option<Self> {
         match (close, unseen) {
@@ -25,7 +25,7 @@ impl Close {
         }
     }
 
-    /// That of two motions.
+    /// The doubts of two motions together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let nearest = match (self.count, other.count) {
@@ -38,17 +38,15 @@ impl Close {
     }
 }
 
-/// Which crossings follow another of the same event by less than two spacings of the samples; none where all are further apart.
+/// The crossings that follow another of the same event by less than two spacings of the samples; `None` if all are further apart.
 ///
-/// They are given in the order in which they happened, each as the event, the time (s) and the spacing (s). Signs change at most
-/// once between two samples, so that crossings found by signs are a spacing apart on the mean, however many there are: nearer
-/// than one spacing tells too little. A sine that is looked at too seldom looks like another of at most half the frequency of the
-/// samples, and in the faster half of what it may look like its crossings are nearer than two spacings. So this is a sign, and
-/// its absence no proof: what looks slower is not told from what is slow.
+/// `crossings` are in the order of time, each with its event, its time (s) and the spacing (s). Signs change at most once between two
+/// samples, so that crossings found by signs are a spacing apart on the mean, however many there are: a bound of one spacing tells too
+/// little. A sine that is sampled too seldom looks like a sine of at most half the frequency of the samples, and in the faster half of
+/// these its crossings are nearer than two spacings. So close crossings are a sign, and their absence is no proof: an alias may look slow.
 ///
-/// `one_way` says of which events only crossings in one direction are given. Between two of them is one in the other, and they
-/// are close where they are nearer than four spacings. A spacing of zero is that of a crossing which was not looked for, since
-/// the velocity jumped there.
+/// `one_way` says for which events only crossings in one direction are given. Between two of them is one in the other direction, and they
+/// are close if they are nearer than four spacings. A crossing with a spacing of zero was not looked for: the velocity jumped there.
 pub fn close_crossings(
     crossings: impl IntoIterator<Item = (usize, f64, f64)>,
     one_way: impl Fn(usize) -> bool,

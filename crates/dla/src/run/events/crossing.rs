@@ -13,17 +13,17 @@ pub enum Direction {
     Both,
 }
 
-/// Of the time (s), the configuration with its full turns, and the velocity.
+/// A function of the time (s), the configuration with its full turns, and the velocity.
 type EventFunction<'a> = Box<dyn Fn(f64, &[f64], &[f64]) -> f64 + 'a>;
 
-/// Of the same, and whether the function rises.
+/// A condition on these, and on whether the function rises.
 type CrossingFilter<'a> = Box<dyn Fn(f64, &[f64], &[f64], bool) -> bool + 'a>;
 
 /// A function of time and state whose crossings of zero are looked for.
 ///
 /// A crossing changes the sign. A zero that is only touched is none, and a run that begins on one has not crossed it.
 pub struct Event<'a> {
-    /// What it is called.
+    /// The name of the event.
     pub name: String,
     /// Which crossings count, in the direction in which the run goes.
     pub direction: Direction,
@@ -114,11 +114,11 @@ pub struct Crossing {
     pub event: usize,
     /// The node before it.
     pub k: u64,
-    /// When (s).
+    /// The time (s).
     pub t: f64,
     /// The interval of time that is known to hold the change of sign (s). The error of the method comes on top.
     pub within: f64,
-    /// How far apart the samples are by which it was found (s); 0 where the velocity jumped over it.
+    /// The spacing of the samples that found it (s); 0 if the velocity jumped over it.
     pub spacing: f64,
     /// Whether the function rises through zero.
     pub rising: bool,

@@ -2,29 +2,31 @@ use super::Event;
 use super::interval::EventInterval;
 use crate::AnyState;
 
-/// What the samples of a step tell of an event between them.
+/// How well the samples of a step show an event between them.
 pub(super) enum Between {
-    /// Enough.
+    /// Well enough.
     Told,
-    /// It changes more quickly than they show: its values at so many parts of the step, on the way that the state takes between samples.
+    /// The event changes more quickly than they show: a number of finer parts of the step, and its values at their ends on the interpolated
+    /// states.
     Finer(u32, Vec<(f64, f64)>),
-    /// It changes more quickly than anything here shows.
+    /// The event changes more quickly than any number of parts shows.
     Untold,
 }
 
-/// What a value may be off the cubic through its neighbours, relative to half their range: a sine with four samples in a turn is off by
-/// 0.14, and its crossings are found; of one with fewer they need not be.
+/// Largest distance of a value from the cubic through its neighbours, relative to half their range: a sine with four samples in a turn is
+/// off by 0.14, and its crossings are found; crossings of a sine with fewer samples may be missed.
 const BENDS: f64 = 0.1;
-/// The same in parts that are made finer for it: a sine has six of them in a turn then, and no two crossings are close.
+/// The same bound in finer parts: a sine then has six of them in a turn, and no two crossings are close.
 const FINE: f64 = 0.03;
-/// What is between samples of a state is known by a cubic; where an event on it is off by more than this part of what it bends by, the cubic
-/// says nothing of the event.
+/// A cubic gives the states between samples. If an event on it is off by more than this fraction of its bend, the cubic says nothing of the
+/// event.
 const KNOWN: f64 = 0.25;
-/// Where it is off by so many times what the event bends by, the event hardly changes.
+/// If it is off by more than this multiple of the bend, the event hardly changes.
 const FLAT: f64 = 100.0;
-/// What so many roundings of the state and of the time make of an event is no bend.
+/// A change of an event that this number of roundings of the state and of the time explain is no bend.
 const ROUNDINGS: f64 = 64.0;
-/// A corner or a jump bends in three neighbouring parts, however many parts there are: so many may, once there are so many times the samples.
+/// A corner or a jump bends in three neighbouring parts, however many parts there are: up to `CORNERS` bent parts are accepted, once there
+/// are `ENOUGH` times as many parts as samples.
 const CORNERS: usize = 6;
 const ENOUGH: u32 = 8;
 /// The most parts of a step.
@@ -32,9 +34,9 @@ const MOST: u32 = 1 << 14;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl EventInterval<'_> {
-    /// Whether an event bends between the samples of a step, of which there is one beyond both ends: one value in each part is compared with
-    /// the cubic through the four samples about it, at a place that differs from part to part. A sine that is looked at too seldom is not
-    /// where the slower one is that it looks like.
+    /// Whether an event bends between the samples of a step, which include one beyond each end: one value in each part is compared with the
+    /// cubic through the four samples about it, at a place that differs from part to part. A sine that is sampled too seldom does not meet
+    /// the slower sine that it looks like at these places.
     pub(super) fn between(
         &self,
         event: &Event<'_>,
@@ -67,7 +69,7 @@ impl EventInterval<'_> {
                 }
             }
         }
-        // Where the way of the state is known too little at one place, it is so at others.
+        // If the states are known too little at one place, they are so at others.
         if untold || !bends {
             return if untold { Between::Untold } else { Between::Told };
         }
@@ -85,7 +87,7 @@ impl EventInterval<'_> {
         Between::Untold
     }
 
-    /// What some roundings of the time and the state make of an event.
+    /// The change of an event by some roundings of the time and the state.
     fn rounding(&self, event: &Event<'_>, at: f64, state: &AnyState) -> f64 {
         let (t, off) = (self.time(at), ROUNDINGS * f64::EPSILON);
         let moved = |sign: f64| {
@@ -111,8 +113,8 @@ fn cubic((from, to): (&AnyState, &AnyState), s: f64, c: f64) -> [Vec<f64>; 2] {
     [q.collect(), v.collect()]
 }
 
-/// A place in each part, what the cubic through the samples about it is there, and half the range of these, with what rounding makes of a
-/// constant; nothing where one has no value.
+/// A place in each part, the value there of the cubic through the samples about it, and half the range of these samples plus the rounding
+/// of a constant; parts with a missing value are left out.
 fn places(known: &[(f64, f64)], parts: u32) -> impl Iterator<Item = (f64, f64, f64)> {
     known.windows(4).enumerate().filter_map(move |(j, four)| {
         let values = [0, 1, 2, 3].map(|k| four[k].1);

@@ -4,7 +4,7 @@ use super::{Crossing, Event, Zero};
 use crate::run::again::again;
 use crate::{AnyState, Mechanism, Method, Report};
 
-/// A step, or one of those that a method makes of its own within it, to be made again in parts.
+/// A step, or one that a method makes of its own within it, to be made again in parts.
 pub(super) struct EventInterval<'a> {
     pub(super) system: &'a dyn Mechanism,
     pub(super) method: &'a Method,
@@ -19,7 +19,8 @@ impl EventInterval<'_> {
         self.t0 + part * self.h
     }
 
-    /// The state after a part of the step, and what that step reported, its work where that is asked for; none where it has no solution.
+    /// The state after a part of the step, and the report of the step to there, with its work if `work` is set; `None` if that step has no
+    /// solution.
     pub(super) fn after(&self, part: f64, work: bool) -> Option<(AnyState, Report)> {
         let mut state = self.start.clone();
         let report = again(self.system, self.method, (self.t0, part * self.h), &mut state, work).ok()?;
@@ -34,8 +35,8 @@ impl EventInterval<'_> {
         }
     }
 
-    /// The crossings within it, in the order of time, looked for in so many parts, or in more where an event bends between these, and located to
-    /// an interval of time (s); and how many events were not seen as a whole. `k` is the node before.
+    /// The crossings within it in the order of time, and the number of events that were not seen as a whole. An event is sampled in
+    /// `samples` parts, or in more if it bends between them, and located to `tolerance` (s). `k` is the node before.
     pub(super) fn crossings(
         &self,
         events: &[Event<'_>],

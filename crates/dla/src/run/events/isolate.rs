@@ -2,9 +2,9 @@ use super::root::RootPoint;
 
 /// Intervals, each with a change of sign, of a function on `[0, 1]` of which some values are known.
 ///
-/// `points` are in order, reach a little beyond both ends, and hold no value that is not a number. Between neighbours a
-/// single crossing shows by the signs. Two crossings show no sign, but a dip: where the size of three neighbours of one
-/// sign is least in the middle, and could fall to zero, its least value is searched for until it changes sign.
+/// `points` are in order, reach a little beyond both ends, and hold no value that is not a number. A single crossing between neighbours
+/// shows by the signs. Two crossings show no sign, but a dip: if the size of three neighbours of one sign is least in the middle, and could
+/// fall to zero, the least value is searched for until it changes sign.
 pub(super) fn isolate(points: &[RootPoint], mut f: impl FnMut(f64) -> f64) -> Vec<(RootPoint, RootPoint)> {
     let mut found = Vec::new();
     for (i, pair) in points.windows(2).enumerate() {
@@ -12,7 +12,7 @@ pub(super) fn isolate(points: &[RootPoint], mut f: impl FnMut(f64) -> f64) -> Ve
         if a.at < 0.0 || b.at > 1.0 {
             continue;
         }
-        // A zero at the end of an interval is a crossing where the function goes on to the other side.
+        // A zero at the end of an interval is a crossing if the function goes on to the other side.
         let after = if b.value == 0.0 { points.get(i + 2).map_or(-a.value, |next| next.value) } else { b.value };
         if a.value * after.signum() < 0.0 && after != 0.0 {
             found.push((a, b));
@@ -43,8 +43,8 @@ fn dip([a, b, c]: [RootPoint; 3], f: &mut impl FnMut(f64) -> f64) -> Option<(Roo
     Some((from, RootPoint { at: least.at, value: side * least.value }, to))
 }
 
-/// A point between the ends where the function is negative, on the way to its least value: the golden section, to the
-/// half of the digits that a flat place has.
+/// A point between the ends at which the function is negative, on the way to its least value: by the golden section, to the half of the
+/// digits that a flat place has.
 fn negative([mut from, mut to]: [f64; 2], mut f: impl FnMut(f64) -> f64) -> Option<RootPoint> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut point = |at: f64| RootPoint { at, value: f(at) };

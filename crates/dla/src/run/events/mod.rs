@@ -1,4 +1,4 @@
-//! Events: where a function of the state crosses zero along a run.
+//! Events: zero crossings of functions of the state along a run.
 
 mod close_crossings;
 mod crossing;

@@ -1,4 +1,4 @@
-/// A point where a function takes a value.
+/// A point with the value of a function.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RootPoint {
     pub(super) at: f64,
@@ -8,10 +8,10 @@ pub(super) struct RootPoint {
 /// Iterations after which a bracket is reported as it is; a bisection would need 60.
 const LIMIT: u32 = 100;
 
-/// The zero of `f` between two points of opposite sign, and the width of what brackets it.
+/// The zero of `f` between two points of opposite sign, and the width of its bracket.
 ///
-/// Inverse quadratic interpolation where the last three points say that it will do, bisection elsewhere, so that it ends
-/// at the latest with the bisections. (Chandrupatla 1997, Adv. Eng. Software 28, 145-149.)
+/// Inverse quadratic interpolation if the last three points say that it will do, otherwise bisection, so that it ends no later than the
+/// bisections. (Chandrupatla 1997, Adv. Eng. Software 28, 145-149.)
 pub(super) fn root(from: RootPoint, to: RootPoint, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
     let (mut a, mut b) = (to, from);
     let mut part = 0.5_f64;
@@ -37,7 +37,7 @@ pub(super) fn root(from: RootPoint, to: RootPoint, tolerance: f64, mut f: impl F
     (if a.value.abs() < b.value.abs() { a.at } else { b.at }, (b.at - a.at).abs())
 }
 
-/// Where between `a` and `b` the inverse quadratic through all three points is zero; none where it is not monotone.
+/// The fraction of the way from `a` to `b` at which the inverse quadratic through all three points is zero; `None` if it is not monotone.
 fn next(a: RootPoint, b: RootPoint, c: RootPoint) -> Option<f64> {
     let xi = (a.at - b.at) / (c.at - b.at);
     let phi = (a.value - b.value) / (c.value - b.value);

@@ -3,49 +3,48 @@ use super::{Close, Crossing, Event, close_crossings};
 use crate::{AnyState, Method, Observer, Report, StepError, Undivided, View};
 use std::ops::ControlFlow;
 
-/// A crossing that is so many roundings after the start of a run is one of its start.
+/// A crossing within this number of roundings after the start of a run belongs to the start.
 const AT_START: f64 = 64.0;
 
 /// The observer that looks for events, and shows another observer the run up to the first that ends it.
 ///
-/// Inside a step the state is that of a shorter step of the same method from the same node, made with copies: the nodes of
-/// the run are not touched, the state holds the constraint as a node does, and an event has the order of the method. A
-/// method that remembers more than the state is repeated as in its first step.
+/// Inside a step the state comes from a shorter step of the same method from the same node, made with copies: the nodes of the run are not
+/// touched, the state holds the constraint as a node does, and an event has the order of the method. A method that remembers more than the
+/// state repeats the step as its first one.
 ///
-/// Each step is looked at in [`samples`](Self::samples) parts, and a part beyond both of its ends, which costs so many steps
-/// more, and one. A method with steps of its own within a step ([`OneStep::own_steps`]) is looked at so in each of them, which
-/// costs one step more. No crossing is missed while between neighbouring samples each function is monotone, or has one
-/// extremum and falls there to zero by no more than eight times what the parabola through the samples does; in
-/// particular not two crossings within a step. Where a function bends more than that between samples, as a fast one of the time does, it
-/// is looked at in more parts, up to 2^14, on a cubic through the states at the samples; crossings are then located by steps as all others
-/// are. What bends at no place where one value in each part is compared, as a short pulse, is not seen. Where crossings are so close that
-/// there may be others between them, where a function has no value at a sample, and where no number of parts tells enough,
-/// [`close`](Self::close) says so.
+/// Each step is sampled in [`samples`](Self::samples) parts, and once beyond each of its ends, which costs `samples + 1` steps more. A
+/// method with steps of its own within a step ([`OneStep::own_steps`]) is sampled so in each of them, which costs one step more. No
+/// crossing is missed while between neighbouring samples each function is monotone, or has one extremum and falls there to zero by no more
+/// than eight times what the parabola through the samples does; in particular, two crossings within a step are found. If a function bends
+/// more than that between samples, as a fast function of the time does, it is sampled in more parts, up to 2^14, on a cubic through the
+/// states at the samples; its crossings are then located by steps as all others are. One value in each part is compared; a bend at none of
+/// these places, as of a short pulse, is not seen. [`close`](Self::close) reports crossings so close that there may be others between them,
+/// functions without a value at a sample, and functions that no number of parts shows.
 ///
-/// What is zero at the start of a run, but for rounding, is not crossed there.
+/// A function that is zero at the start of a run, but for rounding, is not crossed there.
 ///
 /// An event that ends the run shows the inner observer a last node, by a step that is shortened to end there. The state
 /// of the run itself is then one node further; [`ended`](Self::ended) has the one at the event.
 #[derive(Debug)]
 pub struct Watch<'a, Inner> {
-    /// Into how many parts a step is divided; 4 unless set, at least 1.
+    /// Number of parts into which a step is divided; 4 unless set, at least 1.
     pub samples: u32,
-    /// To which interval of time a crossing is located (s); 0 unless set, which is to rounding.
+    /// The interval of time to which a crossing is located (s); 0 unless set, which is to rounding.
     pub tolerance: f64,
     method: &'a Method,
     events: &'a [Event<'a>],
     inner: Inner,
     before: Option<(f64, AnyState)>,
-    /// Whether nothing has been looked at since the start of the run.
+    /// Whether no interval has been searched since the start of the run.
     at_start: bool,
-    /// How many events were not seen as a whole in a step.
+    /// Number of times that an event was not seen as a whole in a step.
     unseen: u64,
-    /// What the method remembers of its own steps, where it has any.
+    /// The memory of the method's own steps; empty if it makes none.
     memory: Vec<f64>,
-    /// Whether the parts of the step have been looked at already.
+    /// Whether the parts of the step have been searched already.
     in_parts: bool,
     crossings: Vec<Crossing>,
-    /// With the number of the node that it makes.
+    /// The crossing that ended the run, with the number of its node.
     ended: Option<(Crossing, u64)>,
 }
 
@@ -68,13 +67,13 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         }
     }
 
-    /// The same, of a run that has come to this time (s) and state: what it saw last.
+    /// The same observer for a run that has come to this time (s) and state.
     #[must_use]
     pub fn resumed(self, t: f64, state: AnyState) -> Self {
         Self { before: Some((t, state)), ..self }
     }
 
-    /// What happened, in the order in which it did.
+    /// The crossings, in the order of time.
     #[must_use]
     pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
@@ -91,21 +90,21 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         self.inner
     }
 
-    /// Why crossings may have been missed: those so close to one another that others may be between them (see [`close_crossings`]), and steps
-    /// that were not [seen](Self::unseen) as a whole.
+    /// Why crossings may have been missed: crossings so close to one another that others may be between them (see [`close_crossings`]), and
+    /// steps that were not [seen](Self::unseen) as a whole.
     #[must_use]
     pub fn close(&self) -> Option<Close> {
         let looked = self.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
         Close::with_unseen(close_crossings(looked, |event| self.events[event].leaves_some_out()), self.unseen)
     }
 
-    /// How often an event was not seen as a whole in a step (see [`Close::unseen`]).
+    /// Number of times that an event was not seen as a whole in a step (see [`Close::unseen`]).
     #[must_use]
     pub fn unseen(&self) -> u64 {
         self.unseen
     }
 
-    /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.
+    /// Looks for events on the way to a node. If an event ends the run, shows the inner observer the last node, and returns `Break`.
     fn look(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         if self.ended.is_some() {
             return ControlFlow::Break(());
@@ -150,7 +149,7 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
                 let (t0, before) = std::mem::replace(&mut from, (t, state.clone()));
                 self.look_between(node, (t0, &before), (t, state))
             });
-            // Where they cannot be made again, the rest is looked at as one.
+            // If the own steps cannot be made again, the rest is searched as one.
             self.unseen += u64::from(made.is_err());
             self.memory = memory;
         }
@@ -178,7 +177,7 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Notes a crossing; whether it ends the run, there at node `k`.
+    /// Notes a crossing; returns whether it ends the run, at node `k`.
     fn note(&mut self, crossing: Crossing, k: u64) -> bool {
         if !self.events[crossing.event].admits(&crossing) {
             return false;
@@ -200,7 +199,7 @@ impl<Inner: Observer> Observer for Watch<'_, Inner> {
         self.inner.start(node);
     }
 
-    /// Where the velocity jumps, a function may jump over zero.
+    /// If the velocity jumps, a function may jump over zero.
     fn resume(&mut self, node: &View<'_>) {
         if let Some((t, before)) = self.before.take() {
             for (index, event) in self.events.iter().enumerate() {
@@ -226,9 +225,9 @@ impl<Inner: Observer> Observer for Watch<'_, Inner> {
         self.inner.step(node, report)
     }
 
-    /// Each part is looked at as a step is: a divided step may hold many crossings.
+    /// Each part is searched as a step is: a divided step may hold many crossings.
     fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
-        // It is made without what the method remembers.
+        // A part is made without the memory of the method.
         self.memory.clear();
         self.look(end, report)?;
         self.in_parts = true;

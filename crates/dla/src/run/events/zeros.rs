@@ -4,9 +4,9 @@ use super::root::{RootPoint, root};
 /// A crossing of zero within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Zero {
-    /// The part of the step at which it is.
+    /// The place of the crossing, as a part of the step.
     pub at: f64,
-    /// The width of what is known to hold it, as a part of the step.
+    /// The width of the bracket that holds it, as a part of the step.
     pub within: f64,
     /// Whether the function rises through zero.
     pub rising: bool,
@@ -21,15 +21,15 @@ pub struct Zeros {
     pub unseen: bool,
 }
 
-/// The crossings within a step, parts of it from 0 to 1, of a function of which some values are known: pairs of a part and a
-/// value in order, a little beyond both ends; what has no value is not a number. Those in a direction that does not count are left out.
+/// The crossings of a function within a step, at parts of it from 0 to 1. `known` has pairs of a part and a value in order, a little beyond
+/// both ends; a missing value is NaN. Crossings in a direction that does not count are left out.
 ///
-/// What [`Watch`](crate::Watch) says of what is missed and what is not holds here.
+/// [`Watch`](crate::Watch) describes which crossings may be missed.
 pub fn zeros(known: &[(f64, f64)], tolerance: f64, counts: impl Fn(bool) -> bool, f: impl FnMut(f64) -> f64) -> Zeros {
     zeros_by(known, true, tolerance, counts, f)
 }
 
-/// The same of values that need not be exact: where they change their sign the function is asked.
+/// As [`zeros`], for values that need not be exact: at a change of sign the function itself is evaluated.
 pub(super) fn zeros_by(
     known: &[(f64, f64)],
     exact: bool,
@@ -40,7 +40,7 @@ pub(super) fn zeros_by(
     searched((known, exact), tolerance, &counts, &mut f)
 }
 
-/// The same, compiled once for every function.
+/// As [`zeros_by`], compiled once for every function.
 fn searched(
     (known, exact): (&[(f64, f64)], bool),
     tolerance: f64,
@@ -67,7 +67,8 @@ fn searched(
     Zeros { zeros, unseen }
 }
 
-/// The points of a change of sign of the function itself, at two places or half their distance beyond them; none where there is no such.
+/// The points of a change of sign of the function itself, at two places or half their distance beyond them; `None` if there is no change of
+/// sign.
 fn truly([from, to]: [f64; 2], f: &mut dyn FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint)> {
     let beyond = 0.5 * (to - from);
     let ends = [(from, to), ((from - beyond).max(0.0), to), (from, (to + beyond).min(1.0))];
@@ -78,7 +79,7 @@ fn truly([from, to]: [f64; 2], f: &mut dyn FnMut(f64) -> f64) -> Option<(RootPoi
     })
 }
 
-/// What is found at parts of a step, in the order of these.
+/// Items found at parts of a step, in the order of the parts.
 pub(super) fn in_order<T>(mut found: Vec<(f64, T)>) -> impl Iterator<Item = T> {
     found.sort_by(|one, other| f64::total_cmp(&one.0, &other.0));
     found.into_iter().map(|(_, found)| found)
