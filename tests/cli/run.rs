@@ -291,7 +291,7 @@ fn a_resumed_run_has_the_bits_of_the_whole() {
 
 #[test]
 fn a_resumed_train_has_the_bits_of_the_whole() {
-    for (duration, method) in [("0.1", "dla"), ("0.06", "energy2")] {
+    for (duration, method) in [("0.1", "dla"), ("0.06", "dla4")] {
         let train = format!("{TRAIN} --duration {duration}");
         resumed_as_whole(&[(train.as_str(), method, 2)]);
     }

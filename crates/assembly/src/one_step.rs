@@ -1,5 +1,5 @@
 use crate::{Assembly, AssemblyState, Solver, SparseComposition, SparseDla};
-use dla::{METHODS, Method, MethodKind, StepError};
+use dla::{METHODS, MethodKind, StepError};
 use std::sync::LazyLock;
 
 /// A one-step map on the constraint distribution of an assembly.
@@ -19,13 +19,13 @@ static OTHERS: LazyLock<String> = LazyLock::new(|| {
     format!("the method is for systems of a few coordinates; for trains and other assemblies take {others} or {last}")
 });
 
-/// The method of that name for an assembly.
+/// The method of that kind for an assembly.
 ///
 /// # Errors
 /// [`StepError::Unsupported`] for one that does none; as [`SparseDla::new`].
-pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn AssemblyMethod>, StepError> {
+pub fn assembly_method(assembly: &Assembly, kind: MethodKind) -> Result<Box<dyn AssemblyMethod>, StepError> {
     let best = Solver::Best;
-    match method.info().kind {
+    match kind {
         MethodKind::Dla => SparseDla::new(assembly, best).map(|method| Box::new(method) as _),
         MethodKind::Composed(order) => {
             SparseComposition::new(assembly, best, order).map(|method| Box::new(method) as _)

@@ -2,8 +2,8 @@ use crate::motion::ElementMotion;
 use crate::work::{StepWork, moves};
 use crate::{Assembly, AssemblyMethod, AssemblyState, assembly_method};
 use dla::{
-    AnyState, Checkpoint, CheckpointError, Integrator, METHODS, Mechanism, Method, Place, ReducedField, Report, Rules,
-    SeeOwnStep, SensitivityError, Size, StepError,
+    AnyState, Checkpoint, CheckpointError, Integrator, Mechanism, Method, MethodKind, Place, ReducedField, Report,
+    Rules, SeeOwnStep, SensitivityError, Size, StepError,
 };
 use lagrangian::linear::Singular;
 use lagrangian::{MotionError, PowerSources, ReducedError, Seeded};
@@ -15,15 +15,27 @@ use std::cell::{Cell, RefCell};
 pub struct AssemblySubject<'a> {
     assembly: Cow<'a, Assembly>,
     work: RefCell<StepWork>,
+    /// The method of the last integrator, with its memory: who looks inside steps makes one integrator after the other.
+    spare: RefCell<Option<(MethodKind, Box<dyn AssemblyMethod>)>>,
 }
 
 impl<'a> From<&'a Assembly> for AssemblySubject<'a> {
     fn from(assembly: &'a Assembly) -> Self {
-        Self { assembly: Cow::Borrowed(assembly), work: RefCell::default() }
+        Self::of(Cow::Borrowed(assembly))
     }
 }
 
-impl AssemblySubject<'_> {
+impl<'a> AssemblySubject<'a> {
+    fn of(assembly: Cow<'a, Assembly>) -> Self {
+        Self { assembly, work: RefCell::default(), spare: RefCell::default() }
+    }
+
+    fn integrator_of(&self, kind: MethodKind) -> AssemblyIntegrator<'_> {
+        let spare = self.spare.take().filter(|(known, _)| *known == kind).map(|(_, method)| Ok(method));
+        let method = spare.unwrap_or_else(|| assembly_method(&self.assembly, kind));
+        AssemblyIntegrator { subject: self, kind, method, report: Report::of(0) }
+    }
+
     /// The numbers of a list for all coordinates; NaN beyond its end.
     fn all(&self, x: &[f64]) -> Vec<f64> {
         let mut all = x.to_vec();
@@ -60,16 +72,11 @@ impl Mechanism for AssemblySubject<'_> {
     }
 
     fn integrator(&self, method: &Method) -> Box<dyn Integrator + '_> {
-        let assembly = &*self.assembly;
-        Box::new(AssemblyIntegrator { assembly, method: assembly_method(assembly, method), report: Report::of(0) })
+        Box::new(self.integrator_of(method.info().kind))
     }
 
     fn general_map(&self) -> Box<dyn Integrator + '_> {
-        let dla = Method::named(METHODS[0].name, None);
-        let method = dla.map_err(|_| StepError::Unsupported { reason: "the table of methods has none" });
-        let assembly = &*self.assembly;
-        let method = method.and_then(|dla| assembly_method(assembly, &dla));
-        Box::new(AssemblyIntegrator { assembly, method, report: Report::of(0) })
+        Box::new(self.integrator_of(MethodKind::Dla))
     }
 
     fn jump_times(&self, from: f64, to: f64) -> Vec<f64> {
@@ -77,9 +84,7 @@ impl Mechanism for AssemblySubject<'_> {
     }
 
     fn smooth_piece(&self, t: f64) -> Box<dyn Mechanism + '_> {
-        let piece: AssemblySubject<'_> =
-            AssemblySubject { assembly: Cow::Owned(self.assembly.smooth_piece(t)), work: RefCell::default() };
-        Box::new(piece)
+        Box::new(AssemblySubject::of(Cow::Owned(self.assembly.smooth_piece(t))))
     }
 
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -198,15 +203,25 @@ impl Assembly {
 
 /// A method on an assembly. A method that could not be made fails in its first step.
 struct AssemblyIntegrator<'a> {
-    assembly: &'a Assembly,
+    subject: &'a AssemblySubject<'a>,
+    kind: MethodKind,
     method: Result<Box<dyn AssemblyMethod>, StepError>,
     report: Report,
+}
+
+impl Drop for AssemblyIntegrator<'_> {
+    fn drop(&mut self) {
+        if let Ok(method) = std::mem::replace(&mut self.method, Err(StepError::Stopped)) {
+            self.subject.spare.replace(Some((self.kind, method)));
+        }
+    }
 }
 
 impl Integrator for AssemblyIntegrator<'_> {
     fn step(&mut self, t: f64, h: f64, state: &mut AnyState) -> Result<&Report, StepError> {
         let method = self.method.as_mut().map_err(|error| *error)?;
-        self.report.iterations = method.step(self.assembly, t, h, self.assembly.own(state)?)?;
+        let assembly = &*self.subject.assembly;
+        self.report.iterations = method.step(assembly, t, h, assembly.own(state)?)?;
         Ok(&self.report)
     }
 
