@@ -1,10 +1,9 @@
 //! A run of a scene, shared by every output and every kind of scene.
 
-use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::table::number;
-use crate::trigger::{Events, Happened, Trigger, WatchedTriggers};
-use crate::{json, substeps};
+use crate::trigger::{Events, Happened, Trigger, WatchedTrigger};
+use crate::{json, substeps, train};
 use dla::{Close, Event, Node, Observer, Schedule, fitted};
 use harness::{Method, Progress, Record, Request, SavedCrossing, recommend, run_observed};
 use scene::{AnyScene, Built, RunSettings};
@@ -17,7 +16,7 @@ pub(crate) struct Account<'a> {
     pub(crate) method: &'a Method,
     pub(crate) request: Request,
     /// The reported events, then the `ends` events that end the run.
-    watched: Vec<WatchedTriggers<'a, Coordinate>>,
+    watched: Vec<WatchedTrigger<'a>>,
     ends: usize,
 }
 
@@ -49,7 +48,8 @@ impl<'a> Account<'a> {
             schedule = self::backward(run, system.mechanism().jump_times(-run.duration, 0.0));
         }
         if backward && tolerance.is_some() && !method.is_adaptive() {
-            return Err(no_step_backward());
+            let problem = "--tolerance chooses no step for a run backward in time: give --step";
+            return Err(CliError::Request(problem.to_owned()));
         }
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // The step is chosen without substeps: they would make any step look good enough.
@@ -66,7 +66,7 @@ impl<'a> Account<'a> {
     pub(crate) fn start(&self) -> Node {
         let Request { schedule, q, v, .. } = &self.request;
         let (q, v) = (q.clone(), v.clone());
-        Node { k: 0, t: schedule.t0, q, v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None }
+        Node { k: 0, t: schedule.t0, q, v, energy: 0.0, work: 0.0, constraint: 0.0, position: None, multipliers: None }
     }
 
     /// The events of the run.
@@ -78,7 +78,7 @@ impl<'a> Account<'a> {
 
     /// The events and the samples per step, for the identity of a saved run; `None` if no event is looked for.
     pub(crate) fn events_identity(&self, samples: u32) -> Option<String> {
-        let names: Vec<&str> = self.watched.iter().map(WatchedTriggers::text).collect();
+        let names: Vec<&str> = self.watched.iter().map(WatchedTrigger::text).collect();
         let ends = if self.ends == 0 { String::new() } else { format!(", the last {} end the run", self.ends) };
         let parts = if samples == harness::EVENT_SAMPLES { String::new() } else { format!(", {samples} samples") };
         (!names.is_empty()).then(|| names.join(", ") + &ends + &parts)
@@ -104,6 +104,9 @@ impl<'a> Account<'a> {
         let Made { record, events } = made;
         let mut object = json::record_of(self.scene.name(), record, &state(self.system, record));
         substeps::add_json(&mut object, record);
+        if let Some(train) = self.system.train() {
+            train::add_json(&mut object, train, record);
+        }
         if let Some(events) = events {
             events.add_to(&mut object);
         }
@@ -120,14 +123,9 @@ impl<'a> Account<'a> {
 }
 
 /// The steps of a run from time zero backward, with these jumps (s).
-pub(crate) fn backward(run: &RunSettings, jumps: Vec<f64>) -> Schedule {
+fn backward(run: &RunSettings, jumps: Vec<f64>) -> Schedule {
     let whole = Schedule { t0: 0.0, step: -run.actual_step(), steps: run.steps() };
     fitted(&whole, run.step, jumps)
-}
-
-/// Steps for a tolerance are chosen forward in time only.
-pub(crate) fn no_step_backward() -> CliError {
-    CliError::Request("--tolerance chooses no step for a run backward in time: give --step".to_owned())
 }
 
 /// Where a run ends, by name.

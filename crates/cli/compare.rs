@@ -2,6 +2,7 @@ use crate::args::CompareArguments;
 use crate::comparison::{Comparison, REFERRED, WITHOUT_REFERENCE, better_than};
 use crate::error::CliError;
 use crate::files::ClaimedFolder;
+use crate::in_memory::MOST_NUMBERS;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
@@ -82,17 +83,6 @@ pub(crate) fn compare_scene(
     saves: &mut Saves,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
-    if let AnyScene::Sleigh(scene) = scene
-        && let Some(whole) = scene.train()?
-    {
-        if saves.are_asked_for() {
-            let problem = "--checkpoint, --resume: a comparison of a scene with `trailers` cannot be saved, since \
-                its pictures need the nodes of all blades and a checkpoint has no nodes; `noslip run` saves and \
-                resumes a train";
-            return Err(CliError::Request(problem.to_owned()));
-        }
-        return train::compare_scene(scene, &whole, methods, interrupt);
-    }
     notes::moves(scene);
     let built = scene.built()?;
     Compare { scene, methods, saves, interrupt }.on(&built.system(), (&built.q, &built.v))
@@ -146,7 +136,8 @@ impl Compare<'_> {
 impl Compare<'_> {
     fn on(mut self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<Comparison, CliError> {
         let name = self.scene.name();
-        let request = Request { schedule: self.scene.schedule(), q: q.to_vec(), v: v.to_vec(), samples: 1000 };
+        let samples = (MOST_NUMBERS / 32 / q.len().max(1) as u64).clamp(2, 1000);
+        let request = Request { schedule: self.scene.schedule(), q: q.to_vec(), v: v.to_vec(), samples };
         let records = self.records(system, &request)?;
         let exact = exact(self.scene);
         let start = system.mechanism().state(q, v);
@@ -233,13 +224,15 @@ impl<'a> ComparisonReference<'a> {
         if let Some(exact) = exact {
             return Self::Exact(exact);
         }
-        if schedule.steps > REFERRED {
+        // Of a train by the best method that there is, and steps count by its coordinates.
+        let (best, size) = if system.train().is_some() { ("dla8", state.q().len() as u64) } else { ("gauss16", 1) };
+        if schedule.steps.saturating_mul(size) > REFERRED {
             return Self::None;
         }
         if progress.interrupt.asked() {
             return Self::Interrupted;
         }
-        let Ok(method) = Method::named("gauss16", None) else { return Self::None };
+        let Ok(method) = Method::named(best, None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
         match harness::integrate_on(&*system.mechanism(), &method, &fine, &mut state, &mut (), progress) {
             Ok(made) if made < fine.steps => Self::Interrupted,
@@ -276,6 +269,7 @@ fn series_of(system: &Built<'_>, record: &Record) -> Series {
         path: x.into_iter().zip(y).map(|(x, y)| [x, y]).collect(),
         heading: column(heading),
         rotor: column(system.named("rotor_angle")),
+        followers: system.train().map_or_else(Vec::new, |train| train::followers_at(train, samples)),
         time: samples.iter().map(|sample| sample.t).collect(),
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),

@@ -1,4 +1,4 @@
-//! A comparison on one scene, of a system or of a train.
+//! A comparison on one scene.
 
 use crate::error::CliError;
 use crate::table::{self, ComparisonRow};

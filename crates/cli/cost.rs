@@ -33,7 +33,7 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     let mut rows = Vec::new();
     let mut failures = Vec::new();
     for (names, part) in parts {
-        let built = part.built()?;
+        let built = part.built_for_analysis()?;
         let (system, q, v) = (built.system().mechanism(), &built.q, &built.v);
         let measured =
             step_time(&*system, &schedule, q, v).and_then(|ns| Ok((ns, step_evaluations(&*system, &schedule, q, v)?)));

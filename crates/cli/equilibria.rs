@@ -46,7 +46,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         check_file(path, arguments.scene.force)?;
     }
     notes::moves(&scene);
-    let built = scene.built()?;
+    let built = scene.built_for_analysis()?;
     let find = Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() };
     let found = find.on(&built.system(), (&built.q, &built.v))?;
     if let Some(path) = &arguments.picture {

@@ -22,8 +22,6 @@ pub(crate) enum CliError {
     Sleigh(#[from] sleigh::SleighError),
     #[error("the scene: {0}")]
     Build(#[from] scene::BuildError),
-    #[error("the scene: {0}")]
-    Train(#[from] scene::TrainError),
     #[error("unknown case `{name}`{}; the cases are {names}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")))]
     Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
@@ -95,7 +93,7 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Case { .. } | Self::Train(_) => 2,
+            Self::Case { .. } => 2,
             Self::Scene(_)
             | Self::Sweep(_)
             | Self::Sleigh(_)

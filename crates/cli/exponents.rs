@@ -25,7 +25,7 @@ fn imposed() -> CliError {
 /// # Errors
 /// [`CliError::Request`] of a scene that imposes velocities.
 pub(crate) fn free(scene: &AnyScene) -> Result<BuiltScene, CliError> {
-    let built = scene.built()?;
+    let built = scene.built_for_analysis()?;
     if built.system().imposes_velocities() { Err(imposed()) } else { Ok(built) }
 }
 

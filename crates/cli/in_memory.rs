@@ -2,7 +2,7 @@ use crate::account::Account;
 use crate::called::{Caller, ShownToCaller};
 use crate::error::CliError;
 use crate::trigger::Trigger;
-use crate::{inspect, substeps, train};
+use crate::{inspect, substeps};
 use dla::{AnyState, Node, Samples, Substeps, Trajectory, View};
 use harness::{EVENT_SAMPLES, Method};
 use scene::{AnyScene, Built, Column};
@@ -87,11 +87,6 @@ pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<Ru
     check_times(&request.times, scene.run().duration)?;
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
-    if let AnyScene::Sleigh(scene) = scene
-        && let Some(train) = scene.train().map_err(CliError::from)?
-    {
-        return Ok(train::in_memory((scene, train), request, &method, caller)?);
-    }
     let built = scene.built().map_err(CliError::from)?;
     Ok(InMemory { scene, request, method: &method, caller }.on(&built.system(), (&built.q, &built.v))?)
 }
@@ -123,7 +118,7 @@ struct InMemory<'a> {
 }
 
 /// Parses the events that are looked for.
-pub(crate) fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
+fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
 }
 
@@ -154,10 +149,7 @@ impl InMemory<'_> {
             // The motion at the times asked for, as far as the run comes; the work is not known there.
             let node = |(t, state): (&f64, &AnyState)| {
                 let piece = mechanism.smooth_piece(*t);
-                let view = View { system: &*piece, k: 0, t: *t, state };
-                let (energy, constraint) = (view.energy(), view.constraint());
-                let (q, v) = (state.unwrapped(), state.v().to_vec());
-                Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
+                Node::of(&View { system: &*piece, k: 0, t: *t, state }, f64::NAN, None)
             };
             sampled = times.iter().zip(samples.taken()).map(node).collect();
             (made, &sampled[..])

@@ -1,18 +1,6 @@
 use dla::RunError;
 use harness::{EnergyJump, Record};
 use serde_json::{Value, json};
-use sleigh::SleighState;
-
-/// The object that `run --json` prints of a sleigh.
-pub(crate) fn record(scene: &str, run: &Record, end: &SleighState) -> Value {
-    record_of(scene, run, &state(run.t, end))
-}
-
-/// Where a sleigh is, and when (s).
-fn state(t: f64, at: &SleighState) -> Value {
-    let SleighState { x, y, heading, speed, turn_rate } = at;
-    json!({"t": t, "x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate})
-}
 
 /// The object that `run --json` prints, with the state at the end.
 pub(crate) fn record_of(scene: &str, record: &Record, end: &Value) -> Value {
@@ -68,17 +56,6 @@ pub(crate) fn failure(failure: &RunError) -> Value {
 
 /// The same object in a row of `compare --json`, with the error at the end, the drift of the energy, the constraint in its
 /// other senses, the cost, and the methods that it overtakes. A run that did not reach its end has no error there and no verdict.
-pub(crate) fn compared(
-    scene: &str,
-    run: &Record,
-    end: &SleighState,
-    error: Option<f64>,
-    better: &[(&str, f64)],
-) -> Value {
-    compared_of(scene, run, &state(run.t, end), error, better)
-}
-
-/// As [`record_of`], with the state at the end.
 pub(crate) fn compared_of(scene: &str, run: &Record, end: &Value, error: Option<f64>, better: &[(&str, f64)]) -> Value {
     let mut object = record_of(scene, run, end);
     object["energy"]["drift_per_time"] = json!(run.energy.drift_per_time);

@@ -1,4 +1,4 @@
-//! The results of `noslip precision`, for a system or a train.
+//! The results of `noslip precision`.
 
 use harness::precision::{Clock, Curve};
 

@@ -9,7 +9,7 @@ use crate::interrupt::Interrupt;
 use crate::measurement::{KnownEnd, Measurement};
 use crate::progress::Interruptible;
 use crate::provenance::{Provenance, metadata_of};
-use crate::{facts, files, inspect, notes, points_file, precision_csv, precision_text, progress, terminal, train};
+use crate::{facts, files, inspect, notes, points_file, precision_csv, precision_text, progress, terminal};
 use harness::Method;
 use harness::precision::{
     Bench, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
@@ -17,6 +17,7 @@ use harness::precision::{
 use scene::{AnyScene, Built};
 use serde_json::json;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// Longest default duration (s).
 const DURATION: f64 = 20.0;
@@ -118,11 +119,6 @@ pub(crate) fn measure(
     chosen: bool,
     interrupt: &Interrupt,
 ) -> Result<Measurement, CliError> {
-    if let AnyScene::Sleigh(scene) = scene
-        && let Some(whole) = scene.train()?
-    {
-        return train::measure(scene, &whole, methods, longest, interrupt);
-    }
     notes::moves(scene);
     let built = scene.built()?;
     Measure { scene, methods, longest, chosen, interrupt }.on(&built.system(), (&built.q, &built.v))
@@ -156,6 +152,10 @@ impl Measure<'_> {
         let mut halvings = 0;
         let (motion, reference) = loop {
             let motion = ReferenceMotion::new(&*mechanism, q, v, duration);
+            if system.train().is_some() {
+                let reference = of_train(&motion, apart)?;
+                break (motion, Ok(reference));
+            }
             let reference = Reference::converged(&motion, &apart).map(|found| {
                 let exact = exact.as_ref().map(|exact| place_at(exact, duration));
                 known(exact, &found, apart)
@@ -193,4 +193,38 @@ fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &
         }
         None => KnownEnd { closed: false, by: "gauss16", steps, error, end },
     }
+}
+
+/// The end of a train by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.
+fn of_train(
+    motion: &ReferenceMotion<'_>,
+    apart: impl Fn(&[f64], &[f64]) -> f64,
+) -> Result<KnownEnd<Vec<f64>>, CliError> {
+    /// Of one run.
+    const LONG: Duration = Duration::from_secs(10);
+    const FEWEST: u64 = 32;
+    let dla8 = Method::named("dla8", None)?;
+    let mut best: Option<KnownEnd<Vec<f64>>> = None;
+    let (mut before, mut steps, mut failure) = (None, FEWEST, String::new());
+    while steps <= FEWEST << 12 {
+        let clock = Instant::now();
+        match motion.end(&dla8, steps) {
+            Ok(end) => {
+                let error = before.as_ref().map(|before: &Vec<f64>| apart(before, &end));
+                if let Some(error) = error {
+                    if best.as_ref().is_some_and(|best| error >= best.error) {
+                        break;
+                    }
+                    best = Some(KnownEnd { closed: false, by: "dla8", steps, error, end: end.clone() });
+                }
+                before = Some(end);
+            }
+            Err(error) => failure = error.to_string(),
+        }
+        if clock.elapsed() > LONG {
+            break;
+        }
+        steps *= 2;
+    }
+    best.ok_or_else(|| CliError::Computation(vec![format!("the reference: too few runs of dla8 succeed: {failure}")]))
 }

@@ -38,11 +38,6 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} ignores --alpha"));
     }
-    if let AnyScene::Sleigh(scene) = &scene
-        && let Some(train) = scene.train()?
-    {
-        return train::run(arguments, (scene, train), &method, is_backward(arguments), out);
-    }
     notes::moves(&scene);
     let built = scene.built()?;
     Run { arguments, scene: &scene, method: &method, out }.on(&built.system(), (&built.q, &built.v))
@@ -186,6 +181,7 @@ impl Run<'_> {
             let text = table::one_run_of(name, record, &account.end(record), file)
                 + &table::derivation(record)
                 + &substeps::told(record)
+                + &system.train().map_or_else(String::new, |train| train::told(train, record))
                 + told;
             tell(self.out, &table::realigned(&text))?;
         }

@@ -37,10 +37,8 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
         AnyScene::Text(_) => None,
     };
     let mut series = series(method, columns, !failures.is_empty());
-    if let AnyScene::Sleigh(scene) = &scene
-        && let Some((train, _)) = scene.train()?
-    {
-        series.followers = train::followers(&train, columns);
+    if let Some(train) = scene.built()?.system().train() {
+        series.followers = train::followers(train, columns);
     }
     let exact_path = exact.map(|exact| series.time.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
     let shown = SceneReport {

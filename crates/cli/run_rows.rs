@@ -1,4 +1,4 @@
-//! Common parts of the runs of a system and of a train: the provenance of their rows, their identity, and their output.
+//! The provenance of the rows of a run, the identity of the run, and its output.
 
 use crate::args::RunArguments;
 use crate::command_line::CommandLine;
@@ -35,12 +35,7 @@ pub(crate) fn provenance(
     Provenance::on((title, text), Some(&command), notes)
 }
 
-/// A scene as its provenance tells it: with the numbers as they were used, whatever the command line said instead of the file.
-pub(crate) fn of(scene: &Scene) -> (&str, &RunSettings, Option<String>) {
-    (&scene.title, &scene.run, scene.to_toml().ok())
-}
-
-/// Identifies the run of a sleigh or of a train.
+/// Identifies the run of a sleigh.
 pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
     // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
     if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {

@@ -30,11 +30,6 @@ impl Saves {
         Ok(Self { to: checkpoint.cloned(), from: resume.clone(), every: *checkpoint_every })
     }
 
-    /// Whether runs are to be saved or resumed.
-    pub(crate) fn are_asked_for(&self) -> bool {
-        self.to.is_some() || self.from.is_some()
-    }
-
     /// Where to go on after an interruption.
     pub(crate) fn folder(&self) -> Option<&Path> {
         self.to.as_deref()

@@ -1,12 +1,10 @@
 use crate::coordinate::{Coordinate, name_and_value, names};
 use crate::error::CliError;
 use crate::table::number;
-use assembly::parts::Train;
 use dla::{Close, Event};
-use harness::{AssemblyCrossing, AssemblyEvent, SavedCrossing};
-use scene::{Built, QUANTITIES, Quantity, SleighQuantity};
+use harness::SavedCrossing;
+use scene::Built;
 use serde_json::{Map, Value, json};
-use sleigh::SleighState;
 use std::str::FromStr;
 
 /// A quantity by its name, and a value that it is to cross.
@@ -22,8 +20,6 @@ pub(crate) struct Trigger {
 
 /// Prefix to the name of an angle; with it whole turns count.
 const UNWRAPPED: &str = "unwrapped_";
-/// The quantities of the first blade of a train.
-const BLADE: &[SleighQuantity] = QUANTITIES.split_at(5).0;
 
 impl FromStr for Trigger {
     type Err = String;
@@ -65,65 +61,44 @@ impl TriggerFunction {
 
 /// A trigger with the quantity that it names in a system.
 #[derive(Debug)]
-pub(crate) struct WatchedTriggers<'a, Q> {
+pub(crate) struct WatchedTrigger<'a> {
     trigger: &'a Trigger,
-    quantity: Q,
+    quantity: Coordinate,
     function: TriggerFunction,
 }
 
 impl Trigger {
     /// Finds the quantity of a system that the trigger names. The prefix that counts turns applies to angles only.
-    fn find<'a, Q>(
-        &'a self,
-        find: impl Fn(&str) -> Option<(Q, bool)>,
-        known: impl Fn() -> Vec<Quantity>,
-    ) -> Result<WatchedTriggers<'a, Q>, CliError> {
-        let unwrapped =
-            || find(self.name.strip_prefix(UNWRAPPED)?).filter(|(_, angle)| *angle).map(|(of, _)| (of, false));
-        let Some((quantity, turns)) = find(&self.name).or_else(unwrapped) else {
-            let angle = known().into_iter().find(|quantity| quantity.angle);
-            let turns = angle.map_or_else(String::new, |of| format!(", {UNWRAPPED}{}", of.name));
-            return Err(CliError::Request(format!(
-                "--event, --until: the scene has no quantity `{}`; accepted are {}{turns} with a value, for example \
-                    {}={:?}",
-                self.name,
-                names(known()),
-                known().first().map_or("x", |first| &first.name),
-                self.value,
-            )));
-        };
-        Ok(WatchedTriggers { trigger: self, quantity, function: TriggerFunction { value: self.value, turns } })
-    }
-
-    /// The trigger on a system.
     ///
     /// # Errors
     /// [`CliError::Request`] if the system has no such quantity.
-    pub(crate) fn on(&self, system: &Built<'_>) -> Result<WatchedTriggers<'_, Coordinate>, CliError> {
-        let find = |name: &str| Coordinate::of(system, name).ok().map(|found| (found.clone(), found.quantity.angle));
-        self.find(find, || system.quantities())
-    }
-
-    /// The trigger on the first blade of a train.
-    ///
-    /// # Errors
-    /// As [`on`](Self::on).
-    pub(crate) fn on_blade(&self) -> Result<WatchedTriggers<'_, SleighQuantity>, CliError> {
-        let find = |name: &str| BLADE.iter().find(|known| known.name == name).map(|known| (*known, known.is_angle()));
-        let quantity =
-            |of: &SleighQuantity| Quantity { name: of.name.to_owned(), unit: of.unit.to_owned(), angle: of.is_angle() };
-        self.find(find, || BLADE.iter().map(quantity).collect())
+    pub(crate) fn on(&self, system: &Built<'_>) -> Result<WatchedTrigger<'_>, CliError> {
+        let find = |name: &str| Coordinate::of(system, name).ok();
+        let unwrapped = || find(self.name.strip_prefix(UNWRAPPED)?).filter(|found| found.quantity.angle);
+        let plain = find(&self.name).map(|found| (found.quantity.angle, found));
+        let Some((turns, quantity)) = plain.or_else(|| unwrapped().map(|found| (false, found))) else {
+            let known = system.quantities();
+            let angle = known.iter().find(|quantity| quantity.angle);
+            let turns = angle.map_or_else(String::new, |of| format!(", {UNWRAPPED}{}", of.name));
+            let first = known.first().map_or_else(|| "x".to_owned(), |first| first.name.clone());
+            return Err(CliError::Request(format!(
+                "--event, --until: the scene has no quantity `{}`; accepted are {}{turns} with a value, for example \
+                    {first}={:?}",
+                self.name,
+                names(known),
+                self.value,
+            )));
+        };
+        Ok(WatchedTrigger { trigger: self, quantity, function: TriggerFunction { value: self.value, turns } })
     }
 }
 
-impl<Q> WatchedTriggers<'_, Q> {
+impl WatchedTrigger<'_> {
     /// The text as the user wrote it.
     pub(crate) fn text(&self) -> &str {
         &self.trigger.text
     }
-}
 
-impl WatchedTriggers<'_, Coordinate> {
     /// The event in a system.
     pub(crate) fn event<'a>(&'a self, system: &'a Built<'a>) -> Event<'a> {
         let of = move |t, q: &[f64], v: &[f64]| self.function.of(self.quantity.value(system, t, q, v));
@@ -132,21 +107,6 @@ impl WatchedTriggers<'_, Coordinate> {
         event.where_true(move |t, q, v, rising| {
             self.function.rises(self.quantity.value(system, t, q, v), rising) == wanted
         })
-    }
-}
-
-impl WatchedTriggers<'_, SleighQuantity> {
-    fn number(&self, state: SleighState) -> f64 {
-        self.quantity.value(state, [f64::NAN; 2])
-    }
-
-    /// The event of the first blade of a train.
-    pub(crate) fn event<'a>(&'a self, train: &'a Train, terminal: bool) -> AssemblyEvent<'a> {
-        let number = move |state: &_| self.number(train.blade(state, 0));
-        let name = self.trigger.text.clone();
-        let event = AssemblyEvent::new(name, terminal, move |_, state| self.function.of(number(state)));
-        let Some(wanted) = self.trigger.rising else { return event };
-        event.where_true(move |_, state, rising| self.function.rises(number(state), rising) == wanted)
     }
 }
 
@@ -162,31 +122,13 @@ pub(crate) struct Happened<'a> {
 
 impl<'a> Happened<'a> {
     /// In a system.
-    pub(crate) fn of(
-        system: &Built<'_>,
-        watched: &[WatchedTriggers<'a, Coordinate>],
-        crossing: &SavedCrossing,
-    ) -> Option<Self> {
+    pub(crate) fn of(system: &Built<'_>, watched: &[WatchedTrigger<'a>], crossing: &SavedCrossing) -> Option<Self> {
         let SavedCrossing { event, t, within, spacing, rising, q, v } = crossing;
-        let WatchedTriggers { trigger, quantity, function } = watched.get(*event)?;
+        let WatchedTrigger { trigger, quantity, function } = watched.get(*event)?;
         let [t, within, spacing] = [*t, *within, *spacing];
         let rising = function.rises(quantity.value(system, t, q, v), *rising);
         let state = system.state(t, q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
         Some(Self { name: &trigger.text, t, within, spacing, rising, state })
-    }
-
-    /// The event of the first blade of a train.
-    pub(crate) fn of_train(
-        train: &Train,
-        watched: &[WatchedTriggers<'a, SleighQuantity>],
-        crossing: &AssemblyCrossing,
-    ) -> Option<Self> {
-        let AssemblyCrossing { event, t, within, spacing, rising, ref state, .. } = *crossing;
-        let of = watched.get(event)?;
-        let blade = train.blade(state, 0);
-        let rising = of.function.rises(of.number(blade), rising);
-        let value = |known: &SleighQuantity| (known.name.to_owned(), json!(known.value(blade, [f64::NAN; 2])));
-        Some(Self { name: &of.trigger.text, t, within, spacing, rising, state: BLADE.iter().map(value).collect() })
     }
 
     /// In the words of a scene, for `run --json`.

@@ -407,24 +407,28 @@ fn ctrl_c_keeps_the_run_and_its_nodes_at_length() {
 
 #[test]
 fn a_comparison_from_its_checkpoints_is_the_same() {
-    let folder = Folder::new();
-    let line = "compare turnaround --duration 20 --methods dla,rk4 --json";
-    let whole = folder.json(line);
-    let saved = folder.json(&format!("{line} --checkpoint saves --checkpoint-every 100"));
-    assert_eq!(names(&folder.join("saves")), ["dla.save", "rk4.save"]);
-    let resumed = folder.json(&format!("{line} --resume saves"));
-    // All but the times.
-    let timeless = |mut object: Value| {
-        for row in object["rows"].as_array_mut().unwrap() {
-            row["wall_seconds"] = Value::Null;
-            row["seconds_per_simulated_second"] = Value::Null;
-        }
-        object
-    };
-    let whole = timeless(whole);
-    assert_eq!((timeless(saved), timeless(resumed)), (whole.clone(), whole));
-    folder.refused(&format!("{line} --checkpoint saves"), &["saves", "exists already", "--force"]);
-    folder.refused(&format!("{line} --resume nowhere"), &["cannot read nowhere"]);
+    let train = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/train.toml");
+    for (scene, methods) in [("turnaround --duration 20", ["dla", "rk4"]), (train, ["dla", "dla4"])] {
+        let folder = Folder::new();
+        let short = if scene == train { " --duration 0.2" } else { "" };
+        let line = format!("compare {scene}{short} --methods {} --json", methods.join(","));
+        let whole = folder.json(&line);
+        let saved = folder.json(&format!("{line} --checkpoint saves --checkpoint-every 100"));
+        assert_eq!(names(&folder.join("saves")), methods.map(|method| format!("{method}.save")));
+        let resumed = folder.json(&format!("{line} --resume saves"));
+        // All but the times.
+        let timeless = |mut object: Value| {
+            for row in object["rows"].as_array_mut().unwrap() {
+                row["wall_seconds"] = Value::Null;
+                row["seconds_per_simulated_second"] = Value::Null;
+            }
+            object
+        };
+        let whole = timeless(whole);
+        assert_eq!((timeless(saved), timeless(resumed)), (whole.clone(), whole));
+        folder.refused(&format!("{line} --checkpoint saves"), &["saves", "exists already", "--force"]);
+        folder.refused(&format!("{line} --resume nowhere"), &["cannot read nowhere"]);
+    }
 }
 
 #[test]

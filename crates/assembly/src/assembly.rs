@@ -1,8 +1,9 @@
+use crate::AssemblyError;
 use crate::element::Element;
 use crate::joint::{Joint, JointElement};
 use crate::local::WIDEST;
 use crate::system_element::SystemElement;
-use crate::{AssemblyError, ConstraintRow};
+use dla::ConstraintRow;
 use lagrangian::{Piecewise, System};
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ use std::sync::Arc;
 /// assert_eq!((train.coordinates(), train.rows()), (6, 4));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Assembly {
     placed: Vec<PlacedElement>,
     angles: Vec<bool>,
@@ -179,6 +180,7 @@ impl Assembly {
     pub fn constraint(&self, row: usize) -> Option<ConstraintRow> {
         let after = self.placed.partition_point(|placed| placed.row + placed.rows <= row);
         let placed = self.placed.get(after)?;
-        Some(ConstraintRow { element: after, name: placed.name, row: row - placed.row })
+        let count = |x: usize| u32::try_from(x).unwrap_or(u32::MAX);
+        Some(ConstraintRow { element: count(after), row: count(row - placed.row), name: placed.name })
     }
 }

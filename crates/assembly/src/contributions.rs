@@ -162,5 +162,5 @@ pub(crate) fn at_state<T>(
     state: &AssemblyState,
     then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T,
 ) -> T {
-    gathered(placed, |i| state.q(i), |q| gathered(placed, |i| state.v(i), |v| then(placed.element.as_ref(), q, v)))
+    gathered(placed, |i| state.q()[i], |q| gathered(placed, |i| state.v()[i], |v| then(placed.element.as_ref(), q, v)))
 }

@@ -5,9 +5,9 @@ use crate::linear::Linear;
 use crate::local::WIDEST;
 use crate::projection::project;
 use crate::terms;
-use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver};
-use dla::Stage;
+use crate::{Assembly, AssemblyMethod, AssemblyState, Solver};
 use dla::convergence::rounding_of_place;
+use dla::{AssemblyFault, Stage, StepError};
 use lagrangian::linear::{larger, largest};
 use std::f64::consts::PI;
 
@@ -51,8 +51,8 @@ impl SparseDla {
     /// The method for this assembly. It finds the pattern of the matrix and allocates the memory.
     ///
     /// # Errors
-    /// [`AssemblyError::Factorisation`] if the memory does not suffice.
-    pub fn new(assembly: &Assembly, solver: Solver) -> Result<Self, AssemblyError> {
+    /// [`AssemblyFault::Factorisation`] if the memory does not suffice.
+    pub fn new(assembly: &Assembly, solver: Solver) -> Result<Self, StepError> {
         let zeros = || vec![0.0; assembly.coordinates()];
         Ok(Self {
             equations: AssemblyEquations::of(assembly, solver, PARALLEL)?,
@@ -74,19 +74,14 @@ impl SparseDla {
 
     /// Computes the mean velocity of the step, in `v`: from the predictor, or, if that may lead to another solution, along the branch
     /// that begins with a step of length zero.
-    fn increment(
-        &mut self,
-        assembly: &Assembly,
-        (t0, h): (f64, f64),
-        state: &AssemblyState,
-    ) -> Result<u32, AssemblyError> {
+    fn increment(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, StepError> {
         predict(state, h, &self.v0, &mut self.v);
         let iterations = self.solve(assembly, (t0, h), state)?;
         let turn = self.turn(assembly, (t0, h));
         if turn <= NEAR && self.equations.settling.certain {
             return Ok(iterations);
         }
-        self.followed(assembly, (t0, h), state, turn).ok_or(AssemblyError::Branch { turn })
+        self.followed(assembly, (t0, h), state, turn).ok_or(AssemblyFault::Branch { turn }.into())
     }
 
     #[cold]
@@ -104,7 +99,7 @@ impl SparseDla {
     }
 
     /// Solves for the mean velocity of the step by Newton's method, starting from `v`, and writes it to `v`.
-    fn solve(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, AssemblyError> {
+    fn solve(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, StepError> {
         let Self { equations, q0, q1, v, p, .. } = self;
         equations.contributions.ask(assembly, true, &|placed, out| {
             at_state(placed, state, |element, q, v| element.beginning(t0, q, v, out));
@@ -148,12 +143,12 @@ impl SparseDla {
             });
             equations.write(assembly, derivatives.then_some(MatrixPart::ElementBlocks), p);
         };
-        let terms = |sizes: &mut [f64]| terms::add(assembly, (t0, h), |i| state.q(i), |i| state.v(i), sizes);
+        let terms = |sizes: &mut [f64]| terms::add(assembly, (t0, h), |i| state.q()[i], |i| state.v()[i], sizes);
         equations.newton((assembly, Stage::Increment), v, terms, evaluate)
     }
 
     /// The velocity at the end, in `v1`.
-    fn projection(&mut self, assembly: &Assembly, (t0, h): (f64, f64)) -> Result<u32, AssemblyError> {
+    fn projection(&mut self, assembly: &Assembly, (t0, h): (f64, f64)) -> Result<u32, StepError> {
         let Self { equations, q0, q1, v, v1, p, .. } = self;
         let (q0, q1, v) = (&*q0, &*q1, &*v);
         equations.contributions.ask(assembly, false, &|placed, out| {
@@ -188,8 +183,8 @@ impl SparseDla {
         turns.fold(0.0, larger)
     }
 
-    /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`dla::StepError::Overshoot`].
-    fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), AssemblyError> {
+    /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`StepError::Overshoot`].
+    fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), StepError> {
         /// If the change of the velocity is a smaller fraction of the velocity (squared), it is round-off.
         const ROUNDING: f64 = 1e-16;
         let mut sums = [0.0; 3];
@@ -209,7 +204,7 @@ impl SparseDla {
         }
         let [damping, inertia, all] = sums;
         if damping > inertia && inertia > ROUNDING * all {
-            return Err(AssemblyError::Overshoot { part: inertia / damping });
+            return Err(StepError::Overshoot { part: inertia / damping });
         }
         Ok(())
     }
@@ -276,10 +271,12 @@ fn predict(state: &AssemblyState, h: f64, v0: &[f64], v: &mut [f64]) {
 }
 
 impl AssemblyMethod for SparseDla {
-    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut AssemblyState) -> Result<u32, AssemblyError> {
-        for i in 0..state.len() {
-            (self.q0[i], self.v0[i]) = (state.q(i), state.v(i));
+    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut AssemblyState) -> Result<u32, StepError> {
+        if state.len() != self.q0.len() {
+            return Err(StepError::OTHER_SHAPE);
         }
+        self.q0.copy_from_slice(state.q());
+        self.v0.copy_from_slice(state.v());
         self.equations.settling.near = rounding_of_place(&self.q0, h);
         let iterations = self.increment(assembly, (t0, h), state)?;
         for (i, q1) in self.q1.iter_mut().enumerate() {
@@ -288,7 +285,7 @@ impl AssemblyMethod for SparseDla {
         self.projection(assembly, (t0, h))?;
         self.brakes_only(assembly, (t0, h))?;
         if !self.q1.iter().chain(&self.v1).all(|x| x.is_finite()) {
-            return Err(AssemblyError::NotFinite);
+            return Err(StepError::NotFinite);
         }
         for i in 0..state.len() {
             let (v, v1) = (self.v[i], self.v1[i]);

@@ -2,9 +2,9 @@ use crate::contributions::Contributions;
 use crate::linear::Linear;
 use crate::pattern::Pattern;
 use crate::settling::{AssemblySettling, REFINEMENTS};
-use crate::{Assembly, AssemblyError, Solver};
-use dla::Stage;
+use crate::{Assembly, Solver};
 use dla::convergence::{Convergence, CorrectionKind, Demand};
+use dla::{Stage, StepError};
 
 /// The linear equations of an assembly, and Newton's method on them.
 pub(crate) struct AssemblyEquations {
@@ -17,7 +17,7 @@ pub(crate) struct AssemblyEquations {
 const CHORD: f64 = 1e-3;
 
 impl AssemblyEquations {
-    pub(crate) fn of(assembly: &Assembly, solver: Solver, parallel: usize) -> Result<Self, AssemblyError> {
+    pub(crate) fn of(assembly: &Assembly, solver: Solver, parallel: usize) -> Result<Self, StepError> {
         Ok(Self {
             linear: Linear::new(Pattern::of(assembly), solver)?,
             contributions: Contributions::of(assembly, parallel),
@@ -33,7 +33,7 @@ impl AssemblyEquations {
         x: &mut [f64],
         terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
-    ) -> Result<u32, AssemblyError> {
+    ) -> Result<u32, StepError> {
         let mut settling = std::mem::take(&mut self.settling);
         let made = self.search(&mut settling, of, x, terms, &mut evaluate);
         self.settling = settling;
@@ -47,7 +47,7 @@ impl AssemblyEquations {
         x: &mut [f64],
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
-    ) -> Result<u32, AssemblyError> {
+    ) -> Result<u32, StepError> {
         let AssemblySettling { newton, last, rounding, start, sizes, changes, reactions, certain, near } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
@@ -79,7 +79,7 @@ impl AssemblyEquations {
             });
             reactions.copy_from_slice(multipliers);
             *certain = convergence.is_certain();
-            if done.map_err(|source| AssemblyError::Newton { stage, source })? {
+            if done.map_err(|source| StepError::Newton { stage, source })? {
                 return Ok(convergence.made());
             }
             if convergence.is_unmet() {

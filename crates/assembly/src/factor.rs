@@ -1,11 +1,11 @@
-use crate::AssemblyError;
 use crate::pattern::Pattern;
+use dla::{AssemblyFault, StepError};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::lu::partial_pivoting::{factor as dense, solve as dense_solve};
 use faer::perm::{Perm, PermRef};
-use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::lu::simplicial;
 use faer::sparse::linalg::{LuError, colamd};
+use faer::sparse::{FaerError, SparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Spec};
 use lagrangian::linear::larger;
 
@@ -40,7 +40,7 @@ enum FactorKind {
 }
 
 impl Factor {
-    pub(crate) fn of(pattern: &Pattern, solver: Solver) -> Result<Self, AssemblyError> {
+    pub(crate) fn of(pattern: &Pattern, solver: Solver) -> Result<Self, StepError> {
         let n = pattern.unknowns();
         let sparse = solver == Solver::Sparse || solver == Solver::Best && n > Solver::SMALL;
         let (kind, scratch) = if sparse {
@@ -62,7 +62,7 @@ impl Factor {
 
     /// Factorises the matrix with these values. Returns its smallest pivot relative to the largest entry of its column, or zero if no
     /// pivot is left.
-    pub(crate) fn factorise(&mut self, pattern: &Pattern, values: &[f64]) -> Result<f64, AssemblyError> {
+    pub(crate) fn factorise(&mut self, pattern: &Pattern, values: &[f64]) -> Result<f64, StepError> {
         let Self { forward, inverse, memory, kind } = self;
         let (n, stack) = (pattern.unknowns(), MemStack::new(memory));
         let largest = |j: usize| pattern.column(values, j).fold(0.0, |most, (_, value)| larger(most, value));
@@ -83,7 +83,7 @@ impl Factor {
                 match simplicial::factorize_simplicial_numeric_lu(forward, inverse, factors, matrix, order, stack) {
                     Ok(()) => {}
                     Err(LuError::SymbolicSingular { .. }) => return Ok(0.0),
-                    Err(error) => return Err(refused(n, &error)),
+                    Err(LuError::Generic(error)) => return Err(refused(n, error)),
                 }
                 let upper = factors.u_factor_unsorted();
                 let pivots = upper.col_ptr()[1..].iter().map(|end| upper.val()[*end as usize - 1].abs());
@@ -124,7 +124,7 @@ impl Factor {
 /// The order of the columns. Columns follow the assembly if the entries then stay near the diagonal, since memory is then read in order.
 /// Otherwise COLAMD orders them, which fills in little in trees and other sparse patterns (Davis, Gilbert, Larimore and Ng 2004, ACM Trans.
 /// Math. Softw. 30, 353-376).
-fn order(pattern: &Pattern) -> Result<Perm<u32>, AssemblyError> {
+fn order(pattern: &Pattern) -> Result<Perm<u32>, StepError> {
     const NARROW: f64 = 16.0;
     let n = pattern.unknowns();
     let (mut forward, mut inverse) = (vec![0; n], vec![0; n]);
@@ -137,15 +137,21 @@ fn order(pattern: &Pattern) -> Result<Perm<u32>, AssemblyError> {
         let mut memory = buffer(colamd::order_scratch::<u32>(n, n, pattern.entries()), n)?;
         let (control, stack) = (colamd::Control::default(), MemStack::new(&mut memory));
         colamd::order(&mut forward, &mut inverse, pattern.symbolic.as_ref(), control, stack)
-            .map_err(|error| refused(n, &error))?;
+            .map_err(|error| refused(n, error))?;
     }
     Ok(Perm::new_checked(forward.into(), inverse.into(), n))
 }
 
-fn buffer(scratch: StackReq, unknowns: usize) -> Result<MemBuffer, AssemblyError> {
-    MemBuffer::try_new(scratch).map_err(|_| refused(unknowns, &"out of memory"))
+fn buffer(scratch: StackReq, unknowns: usize) -> Result<MemBuffer, StepError> {
+    MemBuffer::try_new(scratch)
+        .map_err(|_| AssemblyFault::Factorisation { unknowns, reason: "\"out of memory\"" }.into())
 }
 
-fn refused(unknowns: usize, reason: &dyn std::fmt::Debug) -> AssemblyError {
-    AssemblyError::Factorisation { unknowns, reason: format!("{reason:?}") }
+fn refused(unknowns: usize, error: FaerError) -> StepError {
+    let reason = match error {
+        FaerError::IndexOverflow => "IndexOverflow",
+        FaerError::OutOfMemory => "OutOfMemory",
+        _ => "another error of the library",
+    };
+    AssemblyFault::Factorisation { unknowns, reason }.into()
 }

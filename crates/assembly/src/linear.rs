@@ -1,8 +1,8 @@
 use crate::factor::Factor;
 use crate::pattern::Pattern;
 use crate::singular::dependent;
-use crate::{Assembly, AssemblyError, Solver};
-use dla::Stage;
+use crate::{Assembly, Solver};
+use dla::{AssemblyFault, Stage, StepError};
 use lagrangian::Rounded;
 
 /// Linear equations with a pattern that is found once, and their solution without allocation.
@@ -21,7 +21,7 @@ pub(crate) struct Linear {
 const SINGULAR: f64 = 1e-13;
 
 impl Linear {
-    pub(crate) fn new(pattern: Pattern, solver: Solver) -> Result<Self, AssemblyError> {
+    pub(crate) fn new(pattern: Pattern, solver: Solver) -> Result<Self, StepError> {
         let zeros = || vec![0.0; pattern.unknowns()];
         Ok(Self {
             factor: Factor::of(&pattern, solver)?,
@@ -35,11 +35,11 @@ impl Linear {
 
     /// Factorises the matrix that was written. Where it is singular the error names the constraints, if it is the matrix of this
     /// assembly.
-    pub(crate) fn factorise(&mut self, stage: Stage, of: Option<&Assembly>) -> Result<(), AssemblyError> {
+    pub(crate) fn factorise(&mut self, stage: Stage, of: Option<&Assembly>) -> Result<(), StepError> {
         let pivot = self.factor.factorise(&self.pattern, &self.values)?;
         if pivot < SINGULAR {
             let named = |assembly| dependent(assembly, &self.pattern, &mut self.values, &mut self.factor);
-            return Err(AssemblyError::Singular { stage, pivot, constraints: of.map_or_else(Vec::new, named) });
+            return Err(AssemblyFault::Singular { stage, pivot, constraints: of.map_or([None; 6], named) }.into());
         }
         Ok(())
     }

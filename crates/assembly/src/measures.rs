@@ -2,27 +2,49 @@
 
 use crate::element::Element;
 use crate::local::WIDEST;
-use crate::{Assembly, AssemblyError, AssemblyState};
-use dla::{NewtonError, NotANumber};
+use crate::{Assembly, AssemblyState};
+use dla::{AssemblyFault, NewtonError, NotANumber, StepError};
 use lagrangian::linear::larger;
 
 impl Assembly {
-    /// What each element says of a state, from its coordinates and velocities.
-    pub(crate) fn say<T>(
+    /// Evaluates each element at its coordinates and velocities; `apart` is the difference of two coordinates.
+    fn say<T>(
         &self,
-        state: &AssemblyState,
+        (q_of, v_of): (impl Fn(usize) -> f64, impl Fn(usize) -> f64),
+        apart: impl Fn(usize, usize) -> f64,
         mut of: impl FnMut(&dyn Element, &[f64], &[f64]) -> T,
         mut with: impl FnMut(T),
     ) {
         let (mut q, mut v) = ([0.0; WIDEST], [0.0; WIDEST]);
         for placed in self.placed() {
-            let n = placed.gather(|i| state.q(i), &mut q);
+            let n = placed.gather(&q_of, &mut q);
             for (k, origin) in placed.origins.iter().flatten().enumerate() {
-                q[k] = origin.map_or(q[k], |origin| state.apart(placed.at[k], placed.at[origin]));
+                q[k] = origin.map_or(q[k], |origin| apart(placed.at[k], placed.at[origin]));
             }
-            placed.gather(|i| state.v(i), &mut v);
+            placed.gather(&v_of, &mut v);
             with(of(placed.element.as_ref(), &q[..n], &v[..n]));
         }
+    }
+
+    /// Evaluates each element at a state, with all digits of differences.
+    fn say_of_state<T>(
+        &self,
+        state: &AssemblyState,
+        of: impl FnMut(&dyn Element, &[f64], &[f64]) -> T,
+        with: impl FnMut(T),
+    ) {
+        self.say((|i| state.q()[i], |i| state.v()[i]), |i, from| state.apart(i, from), of, with);
+    }
+
+    /// Evaluates each element at a configuration and a velocity.
+    fn say_at<T>(
+        &self,
+        (q, v): (&[f64], &[f64]),
+        of: impl FnMut(&dyn Element, &[f64], &[f64]) -> T,
+        with: impl FnMut(T),
+    ) {
+        let (q, v) = (number_of(q), number_of(v));
+        self.say((&q, v), |i, from| q(i) - q(from), of, with);
     }
 
     /// The first element with a function that is not finite at a state, or has no finite derivative there; coordinates and rows in the
@@ -31,7 +53,7 @@ impl Assembly {
     #[cold]
     pub fn not_a_number(&self, t: f64, state: &AssemblyState) -> Option<(usize, &'static str, NotANumber)> {
         let (mut places, mut found) = (self.placed().iter().enumerate(), None);
-        self.say(
+        self.say_of_state(
             state,
             |element, q, v| element.not_a_number(t, q, v),
             |missing| {
@@ -45,20 +67,36 @@ impl Assembly {
         found
     }
 
+    /// The error of a step from `state` at `t` (s), with the function named that is not finite there, if it may have failed by that.
+    #[must_use]
+    #[cold]
+    pub fn named(&self, error: StepError, t: f64, state: &AssemblyState) -> StepError {
+        let lost = match error {
+            StepError::NotFinite | StepError::Assembly(AssemblyFault::Singular { .. }) => true,
+            StepError::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
+            _ => false,
+        };
+        let found = if lost { self.not_a_number(t, state) } else { None };
+        found.map_or(error, |(element, name, source)| AssemblyFault::NotANumber { element, name, source }.into())
+    }
+
     /// The energy (J).
     #[must_use]
     pub fn energy(&self, t: f64, state: &AssemblyState) -> f64 {
+        self.energy_at(t, state.q(), state.v())
+    }
+
+    pub(crate) fn energy_at(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let mut total = 0.0;
-        self.say(state, |element, q, v| element.energy(t, q, v), |energy| total += energy);
+        self.say_at((q, v), |element, q, v| element.energy(t, q, v), |energy| total += energy);
         total
     }
 
-    /// The power of all forces and of time (W).
-    #[must_use]
-    pub fn power(&self, t: f64, state: &AssemblyState) -> f64 {
-        let mut total = 0.0;
-        self.say(state, |element, q, v| element.power(t, q, v), |power| total += power);
-        total
+    /// The largest residual `|A v + b|` of all constraints (m/s).
+    pub(crate) fn largest_residual(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        let mut most = 0.0;
+        self.say_at((q, v), |element, q, v| element.misses(t, q, v)[0], |miss| most = larger(most, miss));
+        most
     }
 
     /// The largest residual `|A v + b|` of all constraints (m/s), and the largest `|g|` of those on positions (m).
@@ -66,22 +104,12 @@ impl Assembly {
     pub fn misses(&self, t: f64, state: &AssemblyState) -> [f64; 2] {
         let mut most = [0.0; 2];
         let each = |miss: [f64; 2]| most = [larger(most[0], miss[0]), larger(most[1], miss[1])];
-        self.say(state, |element, q, v| element.misses(t, q, v), each);
+        self.say_of_state(state, |element, q, v| element.misses(t, q, v), each);
         most
     }
 }
 
-impl AssemblyError {
-    /// The error of a step from `state` at `t` (s), with the function named that is not finite there, if it may have failed by that.
-    #[must_use]
-    #[cold]
-    pub fn named(self, assembly: &Assembly, t: f64, state: &AssemblyState) -> Self {
-        let lost = match &self {
-            Self::NotFinite | Self::Singular { .. } => true,
-            Self::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
-            _ => false,
-        };
-        let found = if lost { assembly.not_a_number(t, state) } else { None };
-        found.map_or(self, |(element, name, source)| Self::NotANumber { element, name, source })
-    }
+/// The numbers of a list by their place; NaN beyond its end.
+fn number_of(x: &[f64]) -> impl Fn(usize) -> f64 {
+    |i| x.get(i).copied().unwrap_or(f64::NAN)
 }

@@ -1,8 +1,8 @@
 use crate::contributions::{Contributions, MatrixPart, at};
 use crate::linear::Linear;
 use crate::pattern::Pattern;
-use crate::{Assembly, AssemblyError, Solver};
-use dla::Stage;
+use crate::{Assembly, Solver};
+use dla::{Stage, StepError};
 
 /// The continuous equations of motion of an assembly, `M v' = F + .. + A' lambda` and `d/dt (A v + b) = 0`, summed over its elements
 /// as the discrete ones are: see [`lagrangian::ElementMotion`].
@@ -13,7 +13,7 @@ pub(crate) struct ElementMotion {
 }
 
 impl ElementMotion {
-    pub(crate) fn of(assembly: &Assembly) -> Result<Self, AssemblyError> {
+    pub(crate) fn of(assembly: &Assembly) -> Result<Self, StepError> {
         Ok(Self {
             linear: Linear::new(Pattern::of(assembly), Solver::Best)?,
             contributions: Contributions::of(assembly, usize::MAX),
@@ -28,7 +28,7 @@ impl ElementMotion {
         t: f64,
         q: &[f64],
         v: &[f64],
-    ) -> Result<(&[f64], &[f64]), AssemblyError> {
+    ) -> Result<(&[f64], &[f64]), StepError> {
         let Self { linear, contributions, coordinates } = self;
         contributions.ask(assembly, true, &|placed, out| at(placed, q, v, |q, v| placed.element.motion(t, q, v, out)));
         let (forces, levels) = linear.right.split_at_mut(*coordinates);

@@ -1,7 +1,7 @@
 use crate::contributions::{MatrixPart, gathered};
 use crate::equations::AssemblyEquations;
-use crate::{Assembly, AssemblyError, terms};
-use dla::Stage;
+use crate::{Assembly, terms};
+use dla::{Stage, StepError};
 
 /// The velocity `v1` at the configuration `q1` with the momenta `-p` but for a reaction: `sum_e L_v(q1, v1) = -p + A(q1)' mu`,
 /// `A(q1) v1 + b = 0`.
@@ -13,7 +13,7 @@ pub(crate) fn project(
     (q1, v): (&[f64], &[f64]),
     p: &[f64],
     v1: &mut [f64],
-) -> Result<u32, AssemblyError> {
+) -> Result<u32, StepError> {
     let evaluate = |equations: &mut AssemblyEquations, v1: &[f64], derivatives: bool| {
         equations.contributions.ask(assembly, derivatives, &|placed, out| {
             gathered(

@@ -1,10 +1,8 @@
+use crate::Assembly;
 use crate::factor::Factor;
 use crate::pattern::Pattern;
-use crate::{Assembly, ConstraintRow};
+use dla::DependentRows;
 use lagrangian::linear::largest;
-
-/// How many constraints an error names.
-const NAMED: usize = 6;
 
 /// The constraints that depend on one another in a matrix that is singular: those with a part in its null vector.
 ///
@@ -16,7 +14,7 @@ pub(crate) fn dependent(
     pattern: &Pattern,
     values: &mut [f64],
     factor: &mut Factor,
-) -> Vec<ConstraintRow> {
+) -> DependentRows {
     const PART: f64 = 1e-3;
     let delta = 1e-9 * largest(values);
     for place in &pattern.regular {
@@ -29,19 +27,21 @@ pub(crate) fn dependent(
     let n = assembly.coordinates();
     // No row of a model is orthogonal to these numbers by its symmetry.
     let mut x: Vec<f64> = (0..pattern.unknowns()).map(|i| if i < n { 0.0 } else { 1.0 + (i as f64).sin() }).collect();
+    let mut named = [None; 6];
     if factorised.is_err() {
-        return Vec::new();
+        return named;
     }
     for _ in 0..3 {
         factor.solve(&mut x);
         let size = largest(&x);
         if !size.is_finite() || size == 0.0 {
-            return Vec::new();
+            return named;
         }
         x.iter_mut().for_each(|x| *x /= size);
         x[..n].fill(0.0);
     }
     let mut heaviest: Vec<usize> = (n..x.len()).filter(|k| x[*k].abs() > PART).collect();
     heaviest.sort_by(|a, b| x[*b].abs().total_cmp(&x[*a].abs()));
-    heaviest.into_iter().take(NAMED).filter_map(|k| assembly.constraint(k - n)).collect()
+    named.iter_mut().zip(heaviest).for_each(|(name, k)| *name = assembly.constraint(k - n));
+    named
 }

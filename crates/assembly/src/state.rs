@@ -1,6 +1,8 @@
 mod saved;
 
 use crate::Assembly;
+use dla::{AnyState, Checkpoint, Stateful};
+use std::any::Any;
 
 /// Configuration and velocity of an assembly.
 ///
@@ -9,6 +11,10 @@ use crate::Assembly;
 #[derive(Debug, Clone, PartialEq)]
 pub struct AssemblyState {
     coordinates: Vec<dla::State<1>>,
+    /// What each of them has of these.
+    q: Vec<f64>,
+    turns: Vec<f64>,
+    v: Vec<f64>,
 }
 
 impl AssemblyState {
@@ -17,7 +23,13 @@ impl AssemblyState {
     pub fn new(assembly: &Assembly, q: &[f64], v: &[f64]) -> Self {
         let number = |x: &[f64], i: usize| x.get(i).copied().unwrap_or(0.0);
         let one = |(i, angle): (usize, &bool)| dla::State::new([number(q, i)], [number(v, i)], [*angle]);
-        Self { coordinates: assembly.angles().iter().enumerate().map(one).collect() }
+        Self::of(assembly.angles().iter().enumerate().map(one).collect())
+    }
+
+    fn of(coordinates: Vec<dla::State<1>>) -> Self {
+        let of = |number: fn(&dla::State<1>) -> f64| coordinates.iter().map(number).collect();
+        let (q, turns, v) = (of(|one| one.q()[0]), of(|one| one.turns()[0]), of(|one| one.v()[0]));
+        Self { coordinates, q, turns, v }
     }
 
     /// Number of coordinates.
@@ -32,24 +44,24 @@ impl AssemblyState {
         self.coordinates.is_empty()
     }
 
-    /// A coordinate, an angle within a turn: what elements are evaluated at.
+    /// The coordinates, angles within a turn: what elements are evaluated at.
     #[must_use]
     #[inline(always)]
-    pub fn q(&self, i: usize) -> f64 {
-        self.coordinates[i].q()[0]
+    pub fn q(&self) -> &[f64] {
+        &self.q
     }
 
-    /// A coordinate, an angle with its full turns.
+    /// The coordinates, angles with their full turns.
     #[must_use]
-    pub fn unwrapped(&self, i: usize) -> f64 {
-        self.coordinates[i].unwrapped()[0]
+    pub fn unwrapped(&self) -> Vec<f64> {
+        self.coordinates.iter().map(|one| one.unwrapped()[0]).collect()
     }
 
-    /// A velocity.
+    /// The velocities.
     #[must_use]
     #[inline(always)]
-    pub fn v(&self, i: usize) -> f64 {
-        self.coordinates[i].v()[0]
+    pub fn v(&self) -> &[f64] {
+        &self.v
     }
 
     /// The approximate acceleration of a coordinate, if the last step left it.
@@ -86,22 +98,33 @@ impl AssemblyState {
     #[inline(always)]
     pub(crate) fn advance(&mut self, h: f64, i: usize, increment: f64, v: f64, acceleration: f64) {
         self.coordinates[i].advance_with_acceleration(h, &[increment], [v], [acceleration]);
+        self.show(i);
     }
 
     /// Changes the velocity of a coordinate in place, and discards the memory of earlier steps, which no longer holds.
     pub(crate) fn set_velocity(&mut self, i: usize, v: f64) {
         self.coordinates[i].advance(&[0.0], [v], None);
+        self.show(i);
+    }
+
+    #[inline(always)]
+    fn show(&mut self, i: usize) {
+        let one = &self.coordinates[i];
+        (self.q[i], self.turns[i], self.v[i]) = (one.q()[0], one.turns()[0], one.v()[0]);
     }
 
     /// The state with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {
-        Self { coordinates: self.coordinates.iter().map(dla::State::reversed).collect() }
+        Self::of(self.coordinates.iter().map(dla::State::reversed).collect())
     }
 
     /// Copies the other state. Nothing is allocated if both belong to one assembly.
     pub fn copy_from(&mut self, other: &Self) {
         self.coordinates.clone_from(&other.coordinates);
+        self.q.clone_from(&other.q);
+        self.turns.clone_from(&other.turns);
+        self.v.clone_from(&other.v);
     }
 
     /// The largest distance between a coordinate of this state and the same coordinate of another (m or rad).
@@ -109,5 +132,46 @@ impl AssemblyState {
     pub fn distance(&self, other: &Self) -> f64 {
         let pairs = self.coordinates.iter().zip(&other.coordinates);
         pairs.fold(0.0, |most, (a, b)| lagrangian::linear::larger(most, a.moved_since(b)[0]))
+    }
+}
+
+impl Stateful for AssemblyState {
+    fn q(&self) -> &[f64] {
+        &self.q
+    }
+
+    fn v(&self) -> &[f64] {
+        &self.v
+    }
+
+    fn turns(&self) -> &[f64] {
+        &self.turns
+    }
+
+    fn unwrap_into(&self, q: &mut [f64]) {
+        q.iter_mut().zip(&self.coordinates).for_each(|(q, one)| *q = one.unwrapped()[0]);
+    }
+
+    fn move_into(&self, before: &dyn Any, moved: &mut [f64]) {
+        let before = before.downcast_ref().map_or(&[][..], |before: &Self| &before.coordinates);
+        moved.fill(0.0);
+        let pairs = self.coordinates.iter().zip(before);
+        moved.iter_mut().zip(pairs).for_each(|(moved, (now, before))| *moved = now.moved_since(before)[0]);
+    }
+
+    fn save(&self, checkpoint: &mut Checkpoint) {
+        self.save(checkpoint);
+    }
+
+    fn reversed(&self) -> AnyState {
+        self.reversed().into()
+    }
+
+    fn cloned(&self) -> AnyState {
+        self.clone().into()
+    }
+
+    fn becomes(&mut self, other: &dyn Any) -> bool {
+        other.downcast_ref().map(|other| self.copy_from(other)).is_some()
     }
 }

@@ -1,20 +1,17 @@
+use crate::Assembly;
 use crate::contributions::{at, gathered};
 use crate::element::ElementBlocks;
 use crate::local::WIDEST;
 use crate::motion::ElementMotion;
-use crate::{Assembly, AssemblyState};
-use dla::{Checkpoint, CheckpointError, Hermite};
-use lagrangian::added;
+use dla::{Hermite, Place};
 use lagrangian::quadrature::gauss_legendre;
 
-/// The work done on an assembly since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
+/// Integrates the work done on an assembly over a step.
 ///
 /// As in [`dla::Work`], summed over the elements: the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along the
 /// polynomial of degree five through the positions, velocities and accelerations at both ends of the step, which has order 6. A step whose
 /// forces and moving constraints have no power needs no acceleration.
-pub struct AssemblyWork {
-    total: f64,
-    rest: f64,
+pub(crate) struct StepWork {
     nodes: [f64; 4],
     weights: [f64; 4],
     /// The solver for accelerations, made when first needed; `Err` if the memory did not suffice.
@@ -22,102 +19,68 @@ pub struct AssemblyWork {
     ends: [WorkEnd; 2],
     q: Vec<f64>,
     v: Vec<f64>,
+    /// The work between these ends (J), if it is known: several observers ask for the work of one step.
+    known: Option<f64>,
 }
 
 /// An end of a step.
-#[derive(Debug, Clone, Default)]
+#[derive(Default)]
 struct WorkEnd {
+    t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
 }
 
 impl WorkEnd {
-    fn see(&mut self, state: &AssemblyState) {
-        self.q.clear();
-        self.v.clear();
-        self.q.extend((0..state.len()).map(|i| state.unwrapped(i)));
-        self.v.extend((0..state.len()).map(|i| state.v(i)));
+    fn is(&self, (t, q, v): Place<'_>) -> bool {
+        self.t.to_bits() == t.to_bits() && self.q == q && self.v == v
+    }
+
+    /// Copies a place of an assembly with this number of coordinates.
+    fn see(&mut self, (t, q, v): Place<'_>, all: usize) {
+        self.t = t;
+        for (own, x) in [(&mut self.q, q), (&mut self.v, v)] {
+            own.clear();
+            own.extend_from_slice(x);
+            own.resize(all, f64::NAN);
+        }
     }
 }
 
-impl std::fmt::Debug for AssemblyWork {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Work").field("total", &self.total).field("rest", &self.rest).finish_non_exhaustive()
-    }
-}
-
-impl Default for AssemblyWork {
+impl Default for StepWork {
     fn default() -> Self {
         let (nodes, weights) = gauss_legendre();
         let (ends, none) = ([WorkEnd::default(), WorkEnd::default()], Vec::new);
-        Self { total: 0.0, rest: 0.0, nodes, weights, motion: None, ends, q: none(), v: none() }
+        Self { nodes, weights, motion: None, ends, q: none(), v: none(), known: None }
     }
 }
 
-impl AssemblyWork {
-    /// The work so far (J).
-    #[must_use]
-    pub fn total(&self) -> f64 {
-        self.total
-    }
-
-    /// Writes the work to a checkpoint.
-    pub fn save(&self, checkpoint: &mut Checkpoint) {
-        checkpoint.put("work", &[self.total, self.rest]);
-    }
-
-    /// The work that [`save`](Self::save) wrote.
-    ///
-    /// # Errors
-    /// [`CheckpointError`] if the checkpoint has no work.
-    pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
-        let [total, rest] = checkpoint.get("work")?;
-        Ok(Self { total, rest, ..Self::default() })
-    }
-
-    /// The sum with its rest (J), for [`back_to`](Self::back_to).
-    #[must_use]
-    pub fn sum(&self) -> [f64; 2] {
-        [self.total, self.rest]
-    }
-
-    /// Restores an earlier [`sum`](Self::sum), for steps that are discarded.
-    pub fn back_to(&mut self, sum: [f64; 2]) {
-        [self.total, self.rest] = sum;
-    }
-
-    /// Adds the work of a step from one time and state to another. The work is NaN if the accelerations are not determined.
-    pub fn step(&mut self, assembly: &Assembly, before: (f64, &AssemblyState), after: (f64, &AssemblyState)) {
-        let work = self.over_step(assembly, before, after);
-        self.add(work);
-    }
-
-    /// Adds the work of an impulse (J).
-    pub fn add(&mut self, work: f64) {
-        if work != 0.0 {
-            // With compensation.
-            (self.total, self.rest) = added(self.total, work + self.rest);
-        }
-    }
-
-    fn over_step(
-        &mut self,
-        assembly: &Assembly,
-        (t0, before): (f64, &AssemblyState),
-        (t1, after): (f64, &AssemblyState),
-    ) -> f64 {
+impl StepWork {
+    /// The work of a step from one place to another (J). The work is NaN if the accelerations are not determined.
+    pub(crate) fn between(&mut self, assembly: &Assembly, from: Place<'_>, to: Place<'_>) -> f64 {
         let [first, last] = &mut self.ends;
-        first.see(before);
-        last.see(after);
+        if let Some(known) = self.known.filter(|_| first.is(from) && last.is(to)) {
+            return known;
+        }
+        first.see(from, assembly.coordinates());
+        last.see(to, assembly.coordinates());
+        let work = self.integrated(assembly);
+        self.known = Some(work);
+        work
+    }
+
+    fn integrated(&mut self, assembly: &Assembly) -> f64 {
+        let [first, last] = &self.ends;
+        let (t0, t1) = (first.t, last.t);
         let (h, moved) = (t1 - t0, moves(assembly, t0, &first.q) || moves(assembly, t1, &last.q));
         if !moved && !self.is_powered(assembly, t0, h) {
             return 0.0;
         }
         let motion = self.motion.get_or_insert_with(|| ElementMotion::of(assembly).map_err(|_| ()));
         let Ok(motion) = motion else { return f64::NAN };
-        for (t, WorkEnd { q, v, a }) in [t0, t1].into_iter().zip(&mut self.ends) {
-            let Ok((accelerations, _)) = motion.solved(assembly, t, q, v) else { return f64::NAN };
+        for WorkEnd { t, q, v, a } in &mut self.ends {
+            let Ok((accelerations, _)) = motion.solved(assembly, *t, q, v) else { return f64::NAN };
             a.clear();
             a.extend_from_slice(accelerations);
         }
@@ -163,7 +126,7 @@ fn power(assembly: &Assembly, t: f64, q: &[f64], v: &[f64]) -> f64 {
 }
 
 /// Whether a constraint moves: `b` does not vanish.
-fn moves(assembly: &Assembly, t: f64, q: &[f64]) -> bool {
+pub(crate) fn moves(assembly: &Assembly, t: f64, q: &[f64]) -> bool {
     let (mut momentum, mut level, rest) = ([0.0; WIDEST], [0.0; WIDEST], [0.0; WIDEST]);
     assembly.placed().iter().filter(|placed| placed.rows > 0).any(|placed| {
         let (n, m) = (placed.at.len(), placed.rows);

@@ -2,8 +2,9 @@
 
 use approx::assert_abs_diff_eq;
 use assembly::parts::{RotorElement, SteeredBlade, Trailer, Train};
-use assembly::{Assembly, AssemblyMethod, AssemblyState, AssemblyWork, Joint, Solver, SparseComposition};
-use lagrangian::Scalar;
+use assembly::{Assembly, AssemblyMethod, AssemblyState, AssemblySubject, Joint, Solver, SparseComposition};
+use dla::Mechanism;
+use lagrangian::{PowerSources, Scalar};
 use sleigh::{Sleigh, SleighState};
 
 const WHEELBASE: f64 = 1.0;
@@ -38,7 +39,7 @@ fn steered(count: usize) -> (Train, AssemblyState) {
     train.assembly.join("steering", Steering, [2, wheels]).unwrap();
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[0.2]);
     // The wheels begin to turn at the rate of their joint.
-    let (q, mut v): (Vec<f64>, Vec<f64>) = (0..start.len()).map(|i| (start.q(i), start.v(i))).unzip();
+    let (q, mut v) = (start.q().to_vec(), start.v().to_vec());
     v[wheels] = AMPLITUDE * FREQUENCY;
     let start = AssemblyState::new(&train.assembly, &q, &v);
     (train, start)
@@ -55,8 +56,8 @@ fn assembled(count: usize, steps: u32) -> (Vec<f64>, [f64; 2]) {
         let misses = assembly.misses(f64::from(k + 1) * h, &state);
         most = [most[0].max(misses[0]), most[1].max(misses[1])];
     }
-    let headings = (0..=count).map(|k| state.unwrapped(3 * k + 2));
-    ([state.q(0), state.q(1)].into_iter().chain(headings).collect(), most)
+    let headings = (0..=count).map(|k| state.unwrapped()[3 * k + 2]);
+    ([state.q()[0], state.q()[1]].into_iter().chain(headings).collect(), most)
 }
 
 /// The rates of place, headings and energy.
@@ -157,15 +158,16 @@ fn the_driver_does_the_work() {
         let (train, mut state) = steered(2);
         let (assembly, h) = (&train.assembly, DURATION / f64::from(steps));
         let mut method = SparseComposition::new(assembly, Solver::Best, 8).unwrap();
-        let mut work = AssemblyWork::default();
+        let (subject, mut work) = (AssemblySubject::from(assembly), 0.0);
         let initial = assembly.energy(0.0, &state);
         let (mut error, mut most) = (0.0f64, 0.0f64);
         for k in 0..steps {
             let (t0, t1, before) = (f64::from(k) * h, f64::from(k + 1) * h, state.clone());
             method.step(assembly, t0, h, &mut state).unwrap();
-            work.step(assembly, (t0, &before), (t1, &state));
+            let [q0, q1] = [&before, &state].map(AssemblyState::unwrapped);
+            work += subject.work_between(PowerSources::ALL, (t0, &q0, before.v()), (t1, &q1, state.v()));
             let gained = assembly.energy(t1, &state) - initial;
-            (error, most) = (error.max((gained - work.total()).abs()), most.max(gained.abs()));
+            (error, most) = (error.max((gained - work).abs()), most.max(gained.abs()));
         }
         println!("{steps}: {error:e} J of {most:e} J");
         (error, most)

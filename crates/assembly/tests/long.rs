@@ -18,7 +18,7 @@ fn worst(train: &Train, h: f64, steps: u32, told: u32) -> [f64; 3] {
         let error = (assembly.energy(t, &state) - initial) / initial;
         most = [larger(most[0], slip), larger(most[1], joint), larger(most[2], error)];
         if k % told == 0 {
-            let SleighState { x, y, heading, speed, turn_rate } = train.blade(&state, 0);
+            let SleighState { x, y, heading, speed, turn_rate } = train.blade(&state.unwrapped(), state.v(), 0);
             println!("t = {t}: {most:?}; ({x}, {y}) {heading} rad, {speed} m/s, {turn_rate} rad/s");
         }
     }

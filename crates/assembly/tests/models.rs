@@ -63,12 +63,12 @@ fn roller_racer() {
     let [slip, hinge] = racer.misses(0.0, &start);
     assert!(slip.max(hinge) < 1e-14);
     let end = end(&racer, start);
-    let found = [0, 1, 2].map(|i| end.unwrapped(i));
+    let found = [0, 1, 2].map(|i| end.unwrapped()[i]);
     println!("{found:?} {expected:?}");
     for i in 0..3 {
         assert_abs_diff_eq!(found[i], expected[i], epsilon = 1e-8);
     }
-    assert_abs_diff_eq!(end.unwrapped(5) - end.unwrapped(2), expected[3], epsilon = 1e-8);
+    assert_abs_diff_eq!(end.unwrapped()[5] - end.unwrapped()[2], expected[3], epsilon = 1e-8);
 }
 
 /// The two axles of a snakeboard turn by opposite angles against the board.
@@ -104,9 +104,14 @@ fn snakeboard() {
     let [slip, steering] = board.misses(0.0, &start);
     assert!(slip.max(steering) < 1e-14, "{slip} {steering}");
     let end = end(&board, start);
-    let heading = end.unwrapped(2);
-    let found =
-        [end.unwrapped(0), end.unwrapped(1), heading, end.unwrapped(rotor) - heading, end.unwrapped(back) - heading];
+    let heading = end.unwrapped()[2];
+    let found = [
+        end.unwrapped()[0],
+        end.unwrapped()[1],
+        heading,
+        end.unwrapped()[rotor] - heading,
+        end.unwrapped()[back] - heading,
+    ];
     println!("{found:?} {expected:?}");
     for i in 0..5 {
         assert_abs_diff_eq!(found[i], expected[i], epsilon = 1e-8);
@@ -132,9 +137,9 @@ fn car_with_trailers() {
     train.assembly.join("steering", Steering, [2, wheels]).unwrap();
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[]);
     // The wheels begin to turn at the rate of their joint.
-    let mut v: Vec<f64> = (0..start.len()).map(|i| start.v(i)).collect();
+    let mut v = start.v().to_vec();
     v[wheels] = 0.15;
-    let q: Vec<f64> = (0..start.len()).map(|i| start.q(i)).collect();
+    let q = start.q().to_vec();
     let mut state = AssemblyState::new(&train.assembly, &q, &v);
     let mut method = SparseDla::new(&train.assembly, Solver::Best).unwrap();
     let (mut most, mut turned) = ([0.0f64; 2], 0.0f64);
@@ -143,7 +148,11 @@ fn car_with_trailers() {
         method.step(&train.assembly, t, 0.02, &mut state).unwrap();
         let misses = train.assembly.misses(t + 0.02, &state);
         most = [most[0].max(misses[0]), most[1].max(misses[1])];
-        turned = turned.max((train.blade(&state, 0).heading - train.blade(&state, 5).heading).abs());
+        turned = turned.max(
+            (train.blade(&state.unwrapped(), state.v(), 0).heading
+                - train.blade(&state.unwrapped(), state.v(), 5).heading)
+                .abs(),
+        );
     }
     println!("{most:?} {turned}");
     assert!(most[0] < 1e-13 && most[1] < 1e-14);
@@ -201,7 +210,7 @@ fn swing(steps: u32, c: f64) {
         for k in 0..steps {
             method.step(&pair, 0.02 * f64::from(k), 0.02, &mut state).unwrap();
         }
-        (state.q(3), pair.energy(t, &state) / initial)
+        (state.q()[3], pair.energy(t, &state) / initial)
     };
     // x'' = -(2k/m) x - (2c/m) x' for half the distance.
     let (free, kept) = run(0.0);

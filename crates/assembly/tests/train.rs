@@ -60,7 +60,7 @@ fn computed(train: &Train, u: f64) -> Vec<Complex<f64>> {
     let n = train.trailers().len();
     let mut method = SparseDla::new(&train.assembly, Solver::Best).unwrap();
     let departure = |state: &AssemblyState| -> Vec<f64> {
-        let blades: Vec<SleighState> = (0..=n).map(|k| train.blade(state, k)).collect();
+        let blades: Vec<SleighState> = (0..=n).map(|k| train.blade(&state.unwrapped(), state.v(), k)).collect();
         std::iter::once(blades[0].turn_rate).chain((0..n).map(|k| blades[k + 1].heading - blades[k].heading)).collect()
     };
     let mut step = |j: usize, side: f64| {
@@ -109,7 +109,8 @@ fn a_train_pushed_backward_jack_knifes() {
         let mut most: f64 = 0.0;
         for k in 0..200 {
             method.step(&train.assembly, 0.02 * f64::from(k), 0.02, &mut state).unwrap();
-            let angle = train.blade(&state, 1).heading - train.blade(&state, 0).heading;
+            let angle = train.blade(&state.unwrapped(), state.v(), 1).heading
+                - train.blade(&state.unwrapped(), state.v(), 0).heading;
             most = most.max(angle.abs());
         }
         most

@@ -19,7 +19,7 @@ pub(super) struct Summed {
 impl Summed {
     pub(super) fn of(sweep: &Sweep) -> Result<Self, CliError> {
         let constraint = if matches!(sweep.scene, AnyScene::Sleigh(_)) { "m/s" } else { "" };
-        let built = sweep.scene.built()?;
+        let built = sweep.scene.built_for_analysis()?;
         let system = built.system();
         let mut state = system.quantities();
         state.truncate(system.in_state());
@@ -81,7 +81,7 @@ impl Members<'_> {
     fn compute(&self, member: u64, summary: &mut Option<Summary>, exponent: &mut f64) -> Result<(), String> {
         let scene = self.sweep.member(member, self.names).map_err(|error| error.to_string())?;
         let (method, schedule) = &self.run_of(&scene)?;
-        let built = scene.built().map_err(|error| error.to_string())?;
+        let built = scene.built_for_analysis().map_err(|error| error.to_string())?;
         let (system, start) = (built.system(), (&built.q[..], &built.v[..]));
         let mechanism = system.mechanism();
         let of = |t: f64, q: &[f64], v: &[f64]| (0..system.in_state()).map(|k| system.value(k, t, q, v)).collect();

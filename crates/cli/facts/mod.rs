@@ -7,17 +7,11 @@ use crate::error::CliError;
 use crate::notes;
 use scene::AnyScene;
 
-pub(crate) use sleigh::listed as of_sleigh;
-
 /// The description of a scene.
 pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
-    let scene = match scene {
-        AnyScene::Sleigh(scene) => &**scene,
-        AnyScene::Text(scene) => return Ok(text::listed(scene)),
-    };
-    Ok(match scene.train()? {
-        Some((train, start)) => sleigh::listed(scene, &scene.start, train.assembly.energy(0.0, &start), ""),
-        None => sleigh::of(scene)?,
+    Ok(match scene {
+        AnyScene::Sleigh(scene) => sleigh::of(scene)?,
+        AnyScene::Text(scene) => text::listed(scene),
     })
 }
 

@@ -1,19 +1,23 @@
 use crate::table::{counted, number};
-use scene::{Interpolation, PathShape, PathSpec, Scene, SceneEffect, Started, TimeSpec, TrailersSpec};
-use sleigh::{SleighError, SleighState};
+use scene::{BuildError, BuiltScene, Interpolation, PathShape, PathSpec, Scene, SceneEffect, TimeSpec, TrailersSpec};
+use sleigh::SleighState;
 
 /// The facts of a scene, with the state that it starts in.
-pub(crate) fn of(scene: &Scene) -> Result<Vec<(String, String)>, SleighError> {
-    let Started { system, q, v } = scene.system()?;
-    let first = system.scene_piece(0.0);
-    let (start, energy) = (first.sleigh_state(&q, &v), first.mechanism().energy(0.0, &q, &v));
+pub(crate) fn of(scene: &Scene) -> Result<Vec<(String, String)>, BuildError> {
+    let built = scene.built()?;
+    let (system, BuiltScene { q, v, .. }) = (built.system(), &built);
+    let energy = system.mechanism().smooth_piece(0.0).energy(0.0, q, v);
+    let Some(sleigh) = system.sleigh().filter(|sleigh| sleigh.train().is_none()) else {
+        return Ok(listed(scene, &scene.start, energy, ""));
+    };
+    let start = sleigh.scene_piece(0.0).sleigh_state(q, v);
     let imposed = scene.effects.iter().map(SceneEffect::kind).find(|kind| matches!(*kind, "servo" | "tracer"));
     let imposed = imposed.map_or_else(String::new, |kind| format!(", as the {kind} imposes it"));
     Ok(listed(scene, &start, energy, &imposed))
 }
 
 /// The facts of a scene that starts in that state of its first blade, with that energy (J).
-pub(crate) fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &str) -> Vec<(String, String)> {
+fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &str) -> Vec<(String, String)> {
     let (sleigh, run, schedule) = (&scene.sleigh, &scene.run, scene.schedule());
     let mut facts = vec![
         ("mass m", format!("{} kg", number(sleigh.mass()))),

@@ -123,7 +123,7 @@ impl Bench<'_> {
             back: !other && (self.run.back || self.shared.back),
             schedule: Schedule { t0: 0.0, step: run.step, steps },
         };
-        let built = scene.built().map_err(|error| error.to_string())?;
+        let built = scene.built_for_analysis().map_err(|error| error.to_string())?;
         let (names, recorded) = recording.on(&built);
         Ok((scene, names, recorded))
     }

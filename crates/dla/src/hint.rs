@@ -1,4 +1,6 @@
-use crate::{ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Shorter, Stage, StepError};
+use crate::{
+    AssemblyFault, ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Shorter, Stage, StepError,
+};
 use lagrangian::ReducedError;
 use lagrangian::Shown;
 use lagrangian::linear::Singular;
@@ -131,6 +133,7 @@ impl StepError {
     pub fn history(&self) -> Option<History> {
         match self {
             Self::Newton { source, .. } => Some(source.history()),
+            Self::Assembly(fault) => fault.of_one_system().history(),
             _ => None,
         }
     }
@@ -141,6 +144,7 @@ impl StepError {
         match self {
             Self::Newton { source, .. } => Some(source.iterations()),
             Self::Closed(ClosedStepError::IterationLimit { iterations, .. }) => Some(*iterations),
+            Self::Assembly(fault) => fault.of_one_system().iterations(),
             _ => None,
         }
     }
@@ -158,6 +162,9 @@ impl StepError {
                 long || (is_overflow(source) && *stage != Stage::Projection)
             }
             Self::Closed(_) => true,
+            // Constraints that depend on one another do so in any step.
+            Self::Assembly(AssemblyFault::Singular { constraints: [Some(_), ..], .. }) => false,
+            Self::Assembly(fault) => fault.of_one_system().may_hold_in_parts(),
             _ => long,
         }
     }
@@ -194,6 +201,7 @@ impl StepError {
                 Hint::Numbers
             }
             Self::Motion(_) | Self::Dependent(_) | Self::Reduced(ReducedError::Motion(_)) => Hint::Constraints,
+            Self::Assembly(fault) => return fault.of_one_system().hint(),
             // It says itself what to do, or nothing is to be done.
             Self::Slips { .. } | Self::JumpsAtRest { .. } | Self::Stopped => return None,
         })

@@ -8,6 +8,7 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
+mod assembly_fault;
 mod baseline;
 mod branch;
 mod closed_step_error;
@@ -57,6 +58,7 @@ mod suspect;
 mod unknowns;
 
 pub use crate::dla::{Dla, Form};
+pub use assembly_fault::{AssemblyFault, ConstraintRow, DependentRows};
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use branch::{followed, turn};
 pub use closed_step_error::ClosedStepError;
@@ -86,9 +88,9 @@ pub use run::{
     AnyState, AnyTangent, Checkpoint, CheckpointError, Close, Crossing, Direction, Event, Integrator, Mechanism,
     Member, Node, Nodes, Observer, OwnMethods, ParametrisedMechanics, ParametrisedMechanism, Part, Piece,
     PiecewiseMechanics, Place, RecommendError, Recommendation, Report, RunError, Samples, Schedule, SeeOwnStep,
-    Shorter, Size, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory, Undivided, View, Watch, Work, Zero,
-    Zeros, again, close_crossings, drive, drive_part, fitted, make_steps, onto_constraint, piece_by_piece, pieces,
-    recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
+    Shorter, Size, Stateful, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory, Undivided, View, Watch,
+    Work, Zero, Zeros, again, close_crossings, drive, drive_part, fitted, make_steps, onto_constraint, piece_by_piece,
+    pieces, recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
 };
 pub use runaway::Runaway;
 pub use sensitivity::{

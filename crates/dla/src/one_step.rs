@@ -1,4 +1,4 @@
-use crate::{ClosedStepError, Dependent, Mechanics, NewtonError, NotANumber, State};
+use crate::{AssemblyFault, ClosedStepError, Dependent, Mechanics, NewtonError, NotANumber, State};
 use lagrangian::Shown;
 use lagrangian::{MotionError, PowerSources, ReducedError};
 use std::ops::ControlFlow;
@@ -327,9 +327,16 @@ pub enum StepError {
     /// The caller has asked for the end ([`Stop`](crate::Stop)); no run fails by that, it ends before the step.
     #[error("ended before it was done")]
     Stopped,
+    /// The step of an assembly of many elements failed.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyFault),
 }
 
 impl StepError {
+    /// The error of a state that is one of another system.
+    pub const OTHER_SHAPE: Self =
+        Self::Unsupported { reason: "the state is one of a system with another number of coordinates" };
+
     /// Whether equations did not determine their solution.
     pub(crate) fn is_singular(&self) -> bool {
         matches!(

@@ -168,7 +168,17 @@ fn a_node_has_what_its_step_reported() {
         let t = 0.5 * k as f64;
         let v = (1.0 + t).recip();
         let work = works[k.div_ceil(2) as usize];
-        Node { k, t, q: vec![k as f64], v: vec![v], energy: 0.5 * v * v, work, constraint: 0.0, multipliers }
+        Node {
+            k,
+            t,
+            q: vec![k as f64],
+            v: vec![v],
+            energy: 0.5 * v * v,
+            work,
+            constraint: 0.0,
+            position: None,
+            multipliers,
+        }
     };
     // The impulses of step k sum up to k, over h = 1/2.
     assert_eq!(trajectory.nodes(), [node(0, None), node(2, Some(vec![4.0])), node(3, Some(vec![6.0]))]);

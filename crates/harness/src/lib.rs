@@ -4,7 +4,6 @@
 //! [`precision::work_precision`] measures what accuracy costs in time; [`analysis`] asks whether a motion is chaotic.
 
 pub mod analysis;
-mod assembled;
 mod cost;
 mod drift;
 pub mod ensemble;
@@ -20,10 +19,6 @@ mod stopwatch;
 mod timing;
 mod watched;
 
-pub use assembled::{
-    Assembled, AssemblyCrossing, AssemblyEvent, AssemblyNode, AssemblyNodes, assembly_end, assembly_method,
-    recommend_assembly, run_assembly, run_assembly_saved, run_assembly_watched, sample_assembly,
-};
 pub use cost::{step_evaluations, step_time};
 pub use dla::{METHODS, Method, MethodError, MethodInfo, MethodKind, SubstepSummary};
 pub use drift::{Blocks, Drift, DriftVerdict, Energies, EnergyJump};

@@ -228,7 +228,7 @@ pub fn run_saved_watched(
 }
 
 /// Refuses a checkpoint beyond the end of a run.
-pub(crate) fn within(made: u64, steps: u64) -> Result<(), CheckpointError> {
+fn within(made: u64, steps: u64) -> Result<(), CheckpointError> {
     if made <= steps {
         return Ok(());
     }

@@ -11,8 +11,6 @@ pub(crate) struct Slip {
     before: Option<(f64, AnyState)>,
     /// The mean velocity of a step.
     mean: Vec<f64>,
-    /// A configuration with its turns.
-    place: Vec<f64>,
     step: f64,
     /// The largest of the functions of the positions; `None` if there are none.
     leaf: Option<f64>,
@@ -25,7 +23,6 @@ impl Slip {
             h,
             before: None,
             mean: Vec::new(),
-            place: Vec::new(),
             step: 0.0,
             leaf: None,
         }
@@ -40,12 +37,19 @@ impl Slip {
     }
 
     pub(crate) fn start(&mut self, node: &View<'_>) {
-        self.look(node);
+        // At the functions `g(q, t)` whose rates are constraints.
+        if let Some(g) = node.position() {
+            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g));
+        }
         self.resume(node);
     }
 
     /// Sees a node again at the beginning of a smooth piece.
     pub(crate) fn resume(&mut self, node: &View<'_>) {
+        // An unknown residual stays unknown.
+        if self.step.is_nan() {
+            return;
+        }
         match &mut self.before {
             Some((t, state)) => {
                 *t = node.t;
@@ -72,7 +76,7 @@ impl Slip {
     }
 
     fn over(&mut self, node: &View<'_>, h: f64) {
-        if let Some((t, before)) = &self.before {
+        if let Some((t, before)) = self.before.as_ref().filter(|_| !self.step.is_nan()) {
             self.mean.resize(node.state.v().len(), 0.0);
             node.state.move_into(before, &mut self.mean);
             self.mean.iter_mut().for_each(|moved| *moved /= h);
@@ -80,15 +84,6 @@ impl Slip {
             self.step = larger(self.step, residual);
         }
         self.start(node);
-    }
-
-    /// Looks at the functions `g(q, t)` whose rates are constraints.
-    fn look(&mut self, node: &View<'_>) {
-        self.place.resize(node.state.q().len(), 0.0);
-        node.state.unwrap_into(&mut self.place);
-        if let Some(g) = node.system.largest_position(node.t, &self.place) {
-            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g));
-        }
     }
 
     /// Writes it to a checkpoint; the node before is the state there.
@@ -101,6 +96,6 @@ impl Slip {
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [step] = checkpoint.get("slip")?;
         let leaf = checkpoint.list("leaf")?.first().copied();
-        Ok(Self { rules: self.rules, h: self.h, before: None, mean: Vec::new(), place: Vec::new(), step, leaf })
+        Ok(Self { rules: self.rules, h: self.h, before: None, mean: Vec::new(), step, leaf })
     }
 }

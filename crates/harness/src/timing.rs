@@ -16,7 +16,8 @@ pub trait Progress {
     /// `steps` more steps will be made than were announced.
     fn expect(&mut self, _steps: u64) {}
 
-    /// Whether the run is to end here, with what it has; asked every 2^10 steps, and after every part of a divided one.
+    /// Whether the run is to end here, with what it has; asked every 2^10 steps, of a system of many coordinates more often, and after every
+    /// part of a divided one.
     fn stops(&self) -> bool {
         false
     }
@@ -37,23 +38,38 @@ pub(crate) struct Ticker<'a> {
     pub(crate) progress: &'a mut dyn Progress,
     pub(crate) told: u64,
     pub(crate) stopped: bool,
+    every: u64,
 }
 
 impl<'a> Ticker<'a> {
     const EVERY: u64 = 1 << 10;
+    /// Steps of systems with more coordinates than so many take the longer, the more there are.
+    const FEW: u64 = 64;
+
+    /// Every how many steps of a system the progress is told.
+    fn every(node: &View<'_>) -> u64 {
+        (Self::EVERY / (node.system.size().n as u64).div_ceil(Self::FEW).next_power_of_two()).max(1)
+    }
 
     /// The ticker of a run that has reported `told` steps already.
     pub(crate) fn new(progress: &'a mut dyn Progress, told: u64) -> Self {
-        Self { progress, told, stopped: false }
+        Self { progress, told, stopped: false, every: Self::EVERY }
     }
 }
 
 impl Observer for Ticker<'_> {
-    fn start(&mut self, _node: &View<'_>) {}
+    fn start(&mut self, node: &View<'_>) {
+        self.every = Self::every(node);
+    }
+
+    fn resume(&mut self, node: &View<'_>) {
+        self.every = Self::every(node);
+    }
 
     #[inline]
     fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
-        if node.k.is_multiple_of(Self::EVERY) {
+        // A power of two.
+        if node.k & (self.every - 1) == 0 {
             self.progress.advance(node.k - self.told);
             self.told = node.k;
             if self.progress.stops() {

@@ -57,4 +57,3 @@ pub use settings::{Setting, with_settings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
 pub use systems::{AnyEffect, Column, EffectList, EffectPower, PARAMETERS, SceneSystem, SleighFamily, Started};
-pub use train::TrainError;

@@ -1,4 +1,4 @@
-use crate::{BuiltScene, Scene, SceneEffect};
+use crate::{BuildError, BuiltScene, Scene, SceneEffect};
 use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
@@ -8,9 +8,13 @@ impl Scene {
     /// The system of the scene, with its start.
     ///
     /// # Errors
-    /// As [`system`](Self::system).
-    pub fn built(&self) -> Result<BuiltScene, SleighError> {
-        self.system().map(BuiltScene::of_sleigh)
+    /// [`BuildError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
+    pub fn built(&self) -> Result<BuiltScene, BuildError> {
+        let started = match self.train()? {
+            Some((train, (q, v))) => Started { system: Box::new(train), q, v },
+            None => self.system()?,
+        };
+        Ok(BuiltScene::of_sleigh(started))
     }
 
     /// The system of a sleigh, with its start.

@@ -1,20 +1,7 @@
-use crate::{Scene, SceneEffect, TrailersSpec};
+use crate::{BuildError, Scene, SceneEffect, StartPlace, TrailersSpec};
 use assembly::parts::{Trailer, Train};
-use assembly::{AssemblyError, AssemblyState};
 use sleigh::{Guided, SleighError, SleighState};
 use systems::Started;
-use thiserror::Error;
-
-/// Why a scene makes no train, which one read from a file does.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum TrainError {
-    /// A sleigh or an effect of it.
-    #[error(transparent)]
-    Sleigh(#[from] SleighError),
-    /// The assembly.
-    #[error(transparent)]
-    Assembly(#[from] AssemblyError),
-}
 
 impl TrailersSpec {
     /// The trailer, counted from 0.
@@ -41,8 +28,8 @@ impl Scene {
     /// The train of a scene with trailers, and its start: see [`systems::train`].
     ///
     /// # Errors
-    /// [`TrainError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
-    pub fn train(&self) -> Result<Option<(Train, AssemblyState)>, TrainError> {
+    /// [`BuildError`] if a trailer or an effect has impossible parameters, which one read from a file has not.
+    pub(crate) fn train(&self) -> Result<Option<(Train, StartPlace)>, BuildError> {
         let Some(spec) = self.trailers() else { return Ok(None) };
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let table_rate = self.table_rate().unwrap_or(0.0);

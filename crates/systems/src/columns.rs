@@ -1,4 +1,5 @@
 use crate::{EffectPower, SceneSystem};
+use assembly::parts::Train;
 use dla::Node;
 use sleigh::SleighState;
 
@@ -40,11 +41,14 @@ const SLEIGH: [(&str, &str); 11] = [
     ("center_y", "m"),
 ];
 
+/// The columns of a rotor.
+const ROTOR: [(&str, &str); 2] = [("rotor_angle", "rad"), ("rotor_rate", "rad/s")];
+
 /// The columns of a sleigh: what a scene does not have has no column.
 pub(crate) fn of_sleigh(rotor: bool, powers: &[EffectPower]) -> Vec<Column> {
     let mut columns: Vec<_> = SLEIGH.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
     if rotor {
-        columns.extend([Column::new("rotor_angle", "rad"), Column::new("rotor_rate", "rad/s")]);
+        columns.extend(ROTOR.map(|(name, unit)| Column::new(name, unit)));
     }
     if !powers.is_empty() {
         columns.push(Column::new("work", "J"));
@@ -69,5 +73,25 @@ pub(crate) fn row_of_sleigh(piece: &dyn SceneSystem, node: &Node) -> Vec<f64> {
         row.push(node.work);
     }
     row.extend(powers.iter().map(|power| power.power));
+    row
+}
+
+/// The columns of a train: its first blade, the headings of the others, and the rotor, if there is one.
+pub(crate) fn of_train(train: &Train) -> Vec<Column> {
+    let own = SLEIGH[..7].iter().copied().chain([("work", "J"), ("constraint", "m/s"), ("hinges", "m")]);
+    let others = (1..=train.trailers().len()).map(|k| Column::new(format!("heading_{k}"), "rad"));
+    let rotor = if train.has_rotor() { &ROTOR[..] } else { &[] };
+    let named = |(name, unit)| Column::new(name, unit);
+    own.map(named).chain(others).chain(rotor.iter().copied().map(named)).collect()
+}
+
+/// The numbers of a node in these columns.
+pub(crate) fn row_of_train(train: &Train, node: &Node) -> Vec<f64> {
+    let Node { t, q, v, energy, work, constraint, position, .. } = node;
+    let SleighState { x, y, heading, speed, turn_rate } = train.blade(q, v, 0);
+    let hinges = position.unwrap_or(f64::NAN);
+    let mut row = vec![*t, x, y, heading, speed, turn_rate, *energy, *work, *constraint, hinges];
+    row.extend((1..=train.trailers().len()).map(|k| train.blade(q, v, k).heading));
+    row.extend(train.rotor(q, v).into_iter().flatten());
     row
 }

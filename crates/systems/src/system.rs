@@ -1,5 +1,6 @@
 use crate::power::{self, SceneBody, SceneEffects};
 use crate::{AnyEffect, Column, EffectList, EffectPower, SleighFamily, columns};
+use assembly::parts::Train;
 use dla::{Mechanism, Member, Node, OwnMethods, ParametrisedMechanism, Stepper, Subject};
 use lagrangian::{Piecewise, System, With};
 use sleigh::closed::ClosedForm;
@@ -43,6 +44,11 @@ pub trait SceneSystem: Send + Sync {
     fn row(&self, node: &Node) -> Vec<f64> {
         // They are those of the smooth piece that begins there.
         columns::row_of_sleigh(&*self.scene_piece(node.t), node)
+    }
+
+    /// The train, if blades follow the sleigh.
+    fn train(&self) -> Option<&Train> {
+        None
     }
 
     /// Whether velocities are imposed, so that the blade is not the only constraint.

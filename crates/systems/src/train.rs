@@ -1,8 +1,9 @@
-use crate::{AnyEffect, EffectList, Guiding, Rotor};
-use assembly::AssemblyError;
+use crate::{AnyEffect, Column, EffectList, EffectPower, Guiding, Rotor, SceneSystem, SleighFamily, columns};
 use assembly::parts::{Trailer, Train};
+use assembly::{AssemblyError, AssemblySubject};
+use dla::{Mechanism, Node, ParametrisedMechanism};
 use lagrangian::With;
-use sleigh::Guided;
+use sleigh::{Guided, SleighState};
 
 /// The train behind a sleigh with what guides it and what acts on it.
 ///
@@ -31,5 +32,49 @@ pub fn train(
     match rotor {
         Some(Rotor { inertia, rate, torque }) => train.with_rotor(inertia, rate, torque),
         None => Ok(train),
+    }
+}
+
+/// A train in the words of its first blade.
+impl SceneSystem for Train {
+    fn mechanism(&self) -> Box<dyn Mechanism + '_> {
+        Box::new(AssemblySubject::from(&self.assembly))
+    }
+
+    fn member<'a>(&'a self, _family: &'a SleighFamily) -> Option<Box<dyn ParametrisedMechanism + 'a>> {
+        None
+    }
+
+    fn sleigh_state(&self, q: &[f64], v: &[f64]) -> SleighState {
+        self.blade(q, v, 0)
+    }
+
+    /// The centre of mass of a train is not known.
+    fn centre(&self, _q: &[f64]) -> [f64; 2] {
+        [f64::NAN; 2]
+    }
+
+    fn rotor(&self, q: &[f64], v: &[f64]) -> Option<[f64; 2]> {
+        self.rotor(q, v)
+    }
+
+    fn powers(&self, _t: f64, _q: &[f64], _v: &[f64], _lambda: &[f64]) -> Vec<EffectPower> {
+        Vec::new()
+    }
+
+    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem + '_> {
+        Box::new(self.smooth_piece(t))
+    }
+
+    fn columns(&self, _first: &Node) -> Vec<Column> {
+        columns::of_train(self)
+    }
+
+    fn row(&self, node: &Node) -> Vec<f64> {
+        columns::row_of_train(self, node)
+    }
+
+    fn train(&self) -> Option<&Train> {
+        Some(self)
     }
 }

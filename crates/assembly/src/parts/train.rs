@@ -114,13 +114,14 @@ impl Train {
     /// With the hinge `H = P - b e` of a blade, the next has `P+ = H - d e+`, `omega+ = n+ . H' / d` and `u+ = e+ . H'`.
     #[must_use]
     pub fn start(&self, start: &SleighState, headings: &[f64]) -> AssemblyState {
-        self.start_on_turntable(0.0, start, headings)
+        let (q, v) = self.start_on_turntable(0.0, start, headings);
+        AssemblyState::new(&self.assembly, &q, &v)
     }
 
-    /// The start on a plane that turns at the rate `Omega` about the origin (rad/s). Each blade then has the velocity of the plane
-    /// across it, `s = Omega n . (-y, x)`, and the next blade has `omega+ = (n+ . H' - s+) / d`.
+    /// Configuration and velocity of the start on a plane that turns at the rate `Omega` about the origin (rad/s). Each blade then has the
+    /// velocity of the plane across it, `s = Omega n . (-y, x)`, and the next blade has `omega+ = (n+ . H' - s+) / d`.
     #[must_use]
-    pub fn start_on_turntable(&self, table_rate: f64, start: &SleighState, headings: &[f64]) -> AssemblyState {
+    pub fn start_on_turntable(&self, table_rate: f64, start: &SleighState, headings: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let across = |x: f64, y: f64, sin: f64, cos: f64| table_rate * (x * cos + y * sin);
         let (mut q, mut v) = (Vec::new(), Vec::new());
         let ([mut x, mut y, mut heading], [mut vx, mut vy, mut rate]) = start.to_coordinates();
@@ -146,7 +147,14 @@ impl Train {
             q.push(q[HEADING]);
             v.push(v[HEADING] + relative);
         }
-        AssemblyState::new(&self.assembly, &q, &v)
+        (q, v)
+    }
+
+    /// The smooth piece of the train that holds at the time `t` (s), continued to all times.
+    #[must_use]
+    pub fn smooth_piece(&self, t: f64) -> Self {
+        let Self { assembly, trailers, rotor_rate } = self;
+        Self { assembly: assembly.smooth_piece(t), trailers: trailers.clone(), rotor_rate: *rotor_rate }
     }
 
     /// Place (m) and heading (rad) of every trailer behind a first blade, hinged as they are, with these headings: with the hinge
@@ -178,10 +186,11 @@ impl Train {
         Some([q.get(rotor)? - q.get(HEADING)?, v.get(rotor)? - v.get(HEADING)?])
     }
 
-    /// Place, heading, speed and turn rate of a blade, counted from 0.
+    /// Place, heading, speed and turn rate of a blade, counted from 0, from coordinates and velocities of the assembly; NaN if these lack the
+    /// blade.
     #[must_use]
-    pub fn blade(&self, state: &AssemblyState, k: usize) -> SleighState {
-        let (q, v) = ([0, 1, 2].map(|i| state.unwrapped(3 * k + i)), [0, 1, 2].map(|i| state.v(3 * k + i)));
-        SleighState::from_coordinates(&q, &v)
+    pub fn blade(&self, q: &[f64], v: &[f64], k: usize) -> SleighState {
+        let of = |x: &[f64]| [0, 1, 2].map(|i| x.get(3 * k + i).copied().unwrap_or(f64::NAN));
+        SleighState::from_coordinates(&of(q), &of(v))
     }
 }

@@ -51,7 +51,7 @@ impl AssemblyState {
             NONE.iter().for_each(|name| own.put(name, &[]));
         }
         let loaded = assembly.angles().iter().zip(&each).map(|(angle, own)| dla::State::load(own, [*angle]));
-        Ok(Self { coordinates: loaded.collect::<Result<_, _>>()? })
+        loaded.collect::<Result<_, _>>().map(Self::of)
     }
 }
 

@@ -57,6 +57,12 @@ impl View<'_> {
     pub fn constraint(&self) -> f64 {
         self.system.largest_residual(self.t, self.state.q(), self.state.v())
     }
+
+    /// The largest of the functions of the constraints on positions; `None` if there are none.
+    #[must_use]
+    pub fn position(&self) -> Option<f64> {
+        self.system.largest_position(self.t, self.state)
+    }
 }
 
 /// Something that looks at the nodes of a run and changes nothing.

@@ -116,14 +116,10 @@ impl<'a, Method, const N: usize, const M: usize> Bound<'a, Method, N, M> {
     }
 }
 
-/// The error of a state that is one of another system.
-pub(crate) const OTHER_SHAPE: StepError =
-    StepError::Unsupported { reason: "the state is one of a system with another number of coordinates" };
-
 impl<Method: OneStep<N, M>, const N: usize, const M: usize> Integrator for Bound<'_, Method, N, M> {
     #[inline]
     fn step(&mut self, t: f64, h: f64, state: &mut AnyState) -> Result<&Report, StepError> {
-        let state = state.typed_mut::<N>().ok_or(OTHER_SHAPE)?;
+        let state = state.typed_mut::<N>().ok_or(StepError::OTHER_SHAPE)?;
         let report = self.method.step(self.system, t, h, state)?;
         self.report.take(&report);
         Ok(&self.report)
@@ -150,7 +146,7 @@ impl<Method: OneStep<N, M>, const N: usize, const M: usize> Integrator for Bound
         memory: &mut Vec<f64>,
         see: &mut SeeOwnStep<'_>,
     ) -> Result<(), StepError> {
-        let start = state.typed::<N>().ok_or(OTHER_SHAPE)?;
+        let start = state.typed::<N>().ok_or(StepError::OTHER_SHAPE)?;
         let mut shown = state.clone();
         self.method.own_steps(self.system, time, start, memory, &mut |t, node: &State<N>| {
             if let Some(shown) = shown.typed_mut() {

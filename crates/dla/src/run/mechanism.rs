@@ -51,24 +51,21 @@ pub trait Mechanism {
     /// The largest residual of the constraints.
     fn largest_residual(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 
-    /// The largest residual of the discrete constraint of a step from `q` with the mean velocity `v`.
+    /// The largest residual of the discrete constraint of a step from `q` with the mean velocity `v`; NaN if it is not known.
     fn largest_step_residual(&self, rules: &Rules, time: (f64, f64), q: &[f64], v: &[f64]) -> f64;
 
     /// The largest of the functions of the constraints on positions; `None` if there are none.
-    fn largest_position(&self, t: f64, q: &[f64]) -> Option<f64>;
+    fn largest_position(&self, t: f64, state: &AnyState) -> Option<f64>;
 
     /// The misses of the constraints on positions, each with its gradient; zero within rounding.
     fn position_misses(&self, t: f64, q: &[f64]) -> Vec<(f64, Vec<f64>)>;
 
-    /// The first constraint that a velocity does not obey, as [`StepError::Slips`].
-    fn slip(&self, t: f64, state: &AnyState) -> Option<StepError>;
-
     /// If a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there
-    /// ([`onto_constraint`](crate::onto_constraint())).
+    /// ([`onto_constraint`](crate::onto_constraint())). `time` is the time (s) and the length of the next steps (s).
     ///
     /// # Errors
     /// [`StepError::Newton`] if the constraints do not determine the velocity.
-    fn onto_constraint(&self, t: f64, state: &mut AnyState) -> Result<(), StepError>;
+    fn onto_constraint(&self, time: (f64, f64), state: &mut AnyState) -> Result<(), StepError>;
 
     /// The error of a step from a state, with its cause if that can be named.
     fn explained(&self, time: (f64, f64), state: &AnyState, error: StepError) -> StepError;

@@ -30,7 +30,7 @@ pub use parametrised::{AnyTangent, Member, ParametrisedMechanics, ParametrisedMe
 pub use pieces::{Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, pieces, smooth_pieces};
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial};
 pub use samples::Samples;
-pub use state::AnyState;
+pub use state::{AnyState, Stateful};
 pub use stop::{Stop, stops};
 pub use subject::{OwnMethods, Stepper, Subject};
 pub use substeps::{SubstepSummary, substepped_part};

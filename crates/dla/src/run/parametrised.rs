@@ -1,4 +1,3 @@
-use super::integrator::OTHER_SHAPE;
 use super::mechanism::Mechanism;
 use super::subject::{Subject, seeded_row};
 use crate::method::differentiable;
@@ -103,7 +102,7 @@ impl<const N: usize, const M: usize, const P: usize> ParametrisedMechanism for M
         let rule = differentiable::<N, M>(method)?;
         let seeder = |p: &[Seeded]| self.family.at(basis, &from_fn(|k| p.get(k).copied().unwrap_or(Seeded::zero())));
         let sensitivity = Sensitivity::seeded(self.subject.system(), self.parameters, seeder);
-        let (start, end) = start.typed().zip(end.typed()).ok_or(OTHER_SHAPE)?;
+        let (start, end) = start.typed().zip(end.typed()).ok_or(crate::StepError::OTHER_SHAPE)?;
         let derivative = sensitivity.between(&*rule, time, start, end, report.typed())?;
         let carried = |tangent: &AnyTangent| {
             let (q, v): ([f64; N], [f64; N]) = (filled(&tangent.q), filled(&tangent.v));

@@ -187,7 +187,9 @@ pub fn piece_by_piece(
         let piece = system.smooth_piece(schedule.middle(&steps));
         // Inside a piece there is no impulse.
         if steps.start >= from {
-            piece.onto_constraint(first, state).map_err(|source| RunError::new(made + 1, first, source))?;
+            piece
+                .onto_constraint((first, schedule.step), state)
+                .map_err(|source| RunError::new(made + 1, first, source))?;
         }
         let done = make(&*piece, Piece { steps: steps.start.max(from)..steps.end, schedule }, state)?;
         made = done.made;

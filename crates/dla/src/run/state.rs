@@ -5,25 +5,33 @@ use std::fmt;
 
 /// Configuration and velocity of a system whose size is known at run time.
 ///
-/// It holds the [`State`] of the system's shape, which methods step; [`Mechanism::state`](crate::Mechanism::state) makes it.
-pub struct AnyState(Box<dyn Shaped>);
+/// It holds the state that the methods of its system step; for a system of a shape a [`State`]. [`Mechanism::state`](crate::Mechanism::state)
+/// makes it.
+pub struct AnyState(Box<dyn Stateful>);
 
-/// A state of some shape.
-trait Shaped: Any + Send + Sync {
+/// A state that an [`AnyState`] may hold.
+pub trait Stateful: Any + Send + Sync {
+    /// As [`AnyState::q`].
     fn q(&self) -> &[f64];
+    /// As [`AnyState::v`].
     fn v(&self) -> &[f64];
+    /// As [`AnyState::turns`].
     fn turns(&self) -> &[f64];
+    /// As [`AnyState::unwrap_into`].
     fn unwrap_into(&self, q: &mut [f64]);
-    /// The distance moved since a state of the same shape; zeros of another one.
+    /// The distance moved since a state of the same kind; zeros of another one.
     fn move_into(&self, before: &dyn Any, moved: &mut [f64]);
+    /// As [`AnyState::save`].
     fn save(&self, checkpoint: &mut Checkpoint);
+    /// As [`AnyState::reversed`].
     fn reversed(&self) -> AnyState;
+    /// A copy.
     fn cloned(&self) -> AnyState;
-    /// Copies the other state if it has the same shape; returns whether it has.
+    /// Copies the other state if it is of the same kind; returns whether it is.
     fn becomes(&mut self, other: &dyn Any) -> bool;
 }
 
-impl<const N: usize> Shaped for State<N> {
+impl<const N: usize> Stateful for State<N> {
     fn q(&self) -> &[f64] {
         self.q()
     }
@@ -62,8 +70,8 @@ impl<const N: usize> Shaped for State<N> {
     }
 }
 
-impl<const N: usize> From<State<N>> for AnyState {
-    fn from(state: State<N>) -> Self {
+impl<S: Stateful> From<S> for AnyState {
+    fn from(state: S) -> Self {
         Self(Box::new(state))
     }
 }
@@ -128,13 +136,26 @@ impl AnyState {
     #[must_use]
     #[inline]
     pub fn typed<const N: usize>(&self) -> Option<&State<N>> {
+        self.held()
+    }
+
+    /// The same, to be changed.
+    #[inline]
+    pub fn typed_mut<const N: usize>(&mut self) -> Option<&mut State<N>> {
+        self.held_mut()
+    }
+
+    /// The state that it holds; `None` if that is of another kind.
+    #[must_use]
+    #[inline]
+    pub fn held<S: Stateful>(&self) -> Option<&S> {
         let state: &dyn Any = &*self.0;
         state.downcast_ref()
     }
 
     /// As [`typed`](Self::typed), to be changed.
     #[inline]
-    pub fn typed_mut<const N: usize>(&mut self) -> Option<&mut State<N>> {
+    pub fn held_mut<S: Stateful>(&mut self) -> Option<&mut S> {
         let state: &mut dyn Any = &mut *self.0;
         state.downcast_mut()
     }

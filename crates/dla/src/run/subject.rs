@@ -1,5 +1,5 @@
 use super::counted::Counted;
-use super::integrator::{Bound, OTHER_SHAPE};
+use super::integrator::Bound;
 use super::mechanism::{Mechanism, Place, Size};
 use super::state::{AnyState, row};
 use crate::dependent::named;
@@ -10,7 +10,7 @@ use crate::suspect::suspect_along;
 use crate::{
     Checkpoint, CheckpointError, Differentiable, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method,
     OneStep, PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State,
-    StepError, StepReport, has_tangents, onto_constraint, reduced_field, slip,
+    StepError, StepReport, has_tangents, onto_constraint, reduced_field,
 };
 use lagrangian::linear::{Singular, larger, largest};
 use lagrangian::{Gradients, MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
@@ -242,8 +242,8 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         largest(&residual)
     }
 
-    fn largest_position(&self, t: f64, q: &[f64]) -> Option<f64> {
-        let functions = self.system().positions(t, &row(q))?;
+    fn largest_position(&self, t: f64, state: &AnyState) -> Option<f64> {
+        let functions = self.system().positions(t, &state.typed()?.unwrapped())?;
         functions.into_iter().flatten().map(f64::abs).reduce(larger)
     }
 
@@ -252,12 +252,8 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         misses.into_iter().flatten().flatten().map(|miss| (miss.re, miss.eps.to_vec())).collect()
     }
 
-    fn slip(&self, t: f64, state: &AnyState) -> Option<StepError> {
-        slip(self.system(), t, state.typed()?)
-    }
-
-    fn onto_constraint(&self, t: f64, state: &mut AnyState) -> Result<(), StepError> {
-        onto_constraint(self.system(), t, state.typed_mut().ok_or(OTHER_SHAPE)?)
+    fn onto_constraint(&self, (t, _): (f64, f64), state: &mut AnyState) -> Result<(), StepError> {
+        onto_constraint(self.system(), t, state.typed_mut().ok_or(StepError::OTHER_SHAPE)?)
     }
 
     fn explained(&self, time: (f64, f64), state: &AnyState, error: StepError) -> StepError {
@@ -342,7 +338,7 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         report: &Report,
     ) -> Result<DMatrix<f64>, SensitivityError> {
         let (shaped, system) = self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
-        let (start, end) = start.typed().zip(end.typed()).ok_or(OTHER_SHAPE)?;
+        let (start, end) = start.typed().zip(end.typed()).ok_or(StepError::OTHER_SHAPE)?;
         (shaped.derivative)(system, method, time, [start, end], report.typed())
     }
 }

@@ -19,11 +19,29 @@ pub struct Node {
     pub work: f64,
     /// Largest constraint residual `|A(q) v + b|`.
     pub constraint: f64,
+    /// Largest of the functions of the constraints on positions; `None` if there are none.
+    pub position: Option<f64>,
     /// Constraint forces averaged over the step that led here; `None` at the start.
     pub multipliers: Option<Vec<f64>>,
 }
 
 impl Node {
+    /// The node of a view, with the work since the start (J) and the constraint forces.
+    #[must_use]
+    pub fn of(view: &View<'_>, work: f64, multipliers: Option<Vec<f64>>) -> Self {
+        Self {
+            k: view.k,
+            t: view.t,
+            q: view.state.unwrapped(),
+            v: view.state.v().to_vec(),
+            energy: view.energy(),
+            work,
+            constraint: view.constraint(),
+            position: view.position(),
+            multipliers,
+        }
+    }
+
     /// One number for each of the [columns](Trajectory::columns).
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
         let Self { t, q, v, energy, work, constraint, .. } = self;
@@ -49,16 +67,7 @@ impl Choice {
 
     fn node(&mut self, view: &View<'_>) -> Node {
         self.last = Some(view.k);
-        Node {
-            k: view.k,
-            t: view.t,
-            q: view.state.unwrapped(),
-            v: view.state.v().to_vec(),
-            energy: view.energy(),
-            work: self.work.total(),
-            constraint: view.constraint(),
-            multipliers: self.multipliers.clone(),
-        }
+        Node::of(view, self.work.total(), self.multipliers.clone())
     }
 
     fn start(&mut self, view: &View<'_>) -> Node {

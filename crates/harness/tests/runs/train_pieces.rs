@@ -1,13 +1,12 @@
 //! Trains whose forces or imposed velocities jump, and trains with a rotor: against the static systems and against known motions.
 
+use super::trains::{bits, end_of, request};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use assembly::AssemblyState;
 use assembly::parts::{Trailer, Train};
+use assembly::{AssemblyState, AssemblySubject};
 use dla::{Checkpoint, Schedule, Subject};
-use harness::{
-    Assembled, AssemblyNodes, Method, Request, Saving, assembly_end, recommend_assembly, run_assembly,
-    run_assembly_saved,
-};
+use harness::{Method, Record, Request, Saving, recommend, run_saved};
+use lagrangian::linear::larger;
 use lagrangian::{Piecewise, System, With};
 use sleigh::effects::{Drag, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, Ramp, Sleigh, SleighState, Table, TimeFunction};
@@ -34,9 +33,10 @@ fn trailers() -> Vec<Trailer> {
     vec![Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8).unwrap(); 2]
 }
 
-fn made(train: &Train, name: &str, start: &AssemblyState) -> Assembled {
+fn made(train: &Train, name: &str, start: &AssemblyState) -> Record {
     let method = Method::named(name, None).unwrap();
-    let run = run_assembly(&train.assembly, &method, &SCHEDULE, start, 8, &mut ());
+    let request = request(&SCHEDULE, start, 10);
+    let run = harness::run(&AssemblySubject::from(&train.assembly), &method, &request, &mut ());
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
     run
 }
@@ -58,13 +58,13 @@ where
         // A few units in the last place in each step.
         let rounding = 16.0 * 80.0 * f64::EPSILON * (1.0 + fixed.energy.work.abs());
         for i in 0..3 {
-            assert_abs_diff_eq!(own.end.unwrapped(i), fixed.q[i], epsilon = rounding);
-            assert_abs_diff_eq!(own.end.v(i), fixed.v[i], epsilon = rounding);
+            assert_abs_diff_eq!(own.q[i], fixed.q[i], epsilon = rounding);
+            assert_abs_diff_eq!(own.v[i], fixed.v[i], epsilon = rounding);
         }
         assert!(fixed.energy.work.abs() > 0.01, "{name}");
-        assert_abs_diff_eq!(own.record.energy.work, fixed.energy.work, epsilon = rounding);
-        assert_abs_diff_eq!(own.record.energy.max_error, fixed.energy.max_error, epsilon = rounding);
-        assert_abs_diff_eq!(own.record.t, 4.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(own.energy.work, fixed.energy.work, epsilon = rounding);
+        assert_abs_diff_eq!(own.energy.max_error, fixed.energy.max_error, epsilon = rounding);
+        assert_abs_diff_eq!(own.t, 4.0, epsilon = 1e-12);
     }
 }
 
@@ -111,14 +111,14 @@ fn check_imposed_speed(names: &[&str]) {
         let run = made(&train, name, &start);
         let way = 1.013 + 3.0 * (4.0 - 1.013);
         for blade in 0..=2 {
-            let (before, after) = (train.blade(&start, blade), train.blade(&run.end, blade));
+            let (before, after) = (train.blade(start.q(), start.v(), blade), train.blade(&run.q, &run.v, blade));
             assert_abs_diff_eq!(f64::hypot(after.x - before.x, after.y - before.y), way, epsilon = 1e-12);
             assert_abs_diff_eq!(after.speed, 3.0, epsilon = 1e-13);
         }
         // 1/2 (1 + 2 * 0.5) (9 - 1).
-        assert_abs_diff_eq!(run.record.energy.work, 8.0, epsilon = 1e-11);
-        assert!(run.record.energy.max_error < 1e-11, "{name}: {:e}", run.record.energy.max_error);
-        assert!(run.record.constraint_max < 1e-13 && run.record.leaf_max.unwrap() < 1e-14, "{name}");
+        assert_abs_diff_eq!(run.energy.work, 8.0, epsilon = 1e-11);
+        assert!(run.energy.max_error < 1e-11, "{name}: {:e}", run.energy.max_error);
+        assert!(run.constraint_max < 1e-13 && run.leaf_max.unwrap() < 1e-14, "{name}");
     }
 }
 
@@ -130,9 +130,9 @@ fn a_table_that_ends_before_the_run_holds_its_last_value() {
     let train = Train::new(body, trailers(), |trailer| trailer.sleigh).unwrap();
     let start = train.start(&SleighState { turn_rate: 0.0, ..START }, &[]);
     let run = made(&train, "dla", &start);
-    let (before, after) = (train.blade(&start, 0), train.blade(&run.end, 0));
+    let (before, after) = (train.blade(start.q(), start.v(), 0), train.blade(&run.q, &run.v, 0));
     assert_abs_diff_eq!(f64::hypot(after.x - before.x, after.y - before.y), 4.0, epsilon = 1e-12);
-    assert!(run.record.constraint_max < 1e-13 && run.record.energy.work.abs() < 1e-12, "{:?}", run.record);
+    assert!(run.constraint_max < 1e-13 && run.energy.work.abs() < 1e-12, "{run:?}");
 }
 
 /// A bent train that is jerked and pushed, behind whose lead nothing is straight.
@@ -146,16 +146,20 @@ fn jerked() -> (Train, AssemblyState) {
 }
 
 /// The end of the bent train after so many steps of a method.
-fn jerked_end(name: &str, steps: u64) -> AssemblyState {
+fn jerked_end(name: &str, steps: u64) -> Vec<f64> {
     let (train, start) = jerked();
     let method = Method::named(name, None).unwrap();
     let schedule = Schedule { t0: 0.0, step: 4.0 / steps as f64, steps };
-    assembly_end(&train.assembly, &method, &schedule, &start, &mut ()).unwrap().unwrap()
+    end_of(&train, &method, &schedule, &start)
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |most, (a, b)| larger(most, a - b))
 }
 
 /// The error of so many steps and of twice as many.
-fn check_order(name: &str, order: f64, steps: u64, right: &AssemblyState) {
-    let [coarse, fine] = [steps, 2 * steps].map(|steps| jerked_end(name, steps).distance(right));
+fn check_order(name: &str, order: f64, steps: u64, right: &[f64]) {
+    let [coarse, fine] = [steps, 2 * steps].map(|steps| distance(&jerked_end(name, steps), right));
     println!("{name}: {coarse:e} {fine:e}");
     // The shares of the pieces are whole numbers of steps.
     assert_relative_eq!((coarse / fine).log2(), order, epsilon = 0.35);
@@ -176,12 +180,10 @@ fn methods_keep_their_orders_across_jumps_in_full() {
         check_order(name, order, 80, &right);
     }
     // A step for a tolerance is looked for across the jumps too.
-    let seen = |state: &AssemblyState| [state.unwrapped(6), state.unwrapped(7)];
     let dla4 = Method::named("dla4", None).unwrap();
-    let found = recommend_assembly(&train.assembly, &dla4, &start, 4.0, 1e-5, seen).unwrap();
-    let made = seen(&jerked_end("dla4", found.steps));
-    let wanted = seen(&right);
-    assert!((0..2).all(|i| (made[i] - wanted[i]).abs() < 1e-5), "{found:?}");
+    let (system, place) = (AssemblySubject::from(&train.assembly), (&start.unwrapped()[..], start.v()));
+    let found = recommend(&system, &dla4, place, (4.0, 1e-5), &mut ()).unwrap();
+    assert!(distance(&jerked_end("dla4", found.steps), &right) < 1e-5, "{found:?}");
 }
 
 #[test]
@@ -198,18 +200,15 @@ fn a_run_across_jumps_goes_on_from_its_files_at_length() {
 /// Saved before, at and after a jump, a run goes on with the same bits; so does one that has fewer steps than pieces fail at once.
 fn check_files(names: &[&str], every: u64) {
     let (train, start) = jerked();
-    let bits =
-        |run: &Assembled| format!("{:?} {:?}", harness::Record { wall_seconds: 0.0, ..run.record.clone() }, run.end);
+    let system = AssemblySubject::from(&train.assembly);
     for &name in names {
         let method = Method::named(name, None).unwrap();
-        let whole = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 8, &mut ());
+        let request = request(&SCHEDULE, &start, 10);
+        let whole = harness::run(&system, &method, &request, &mut ());
         let identity = Checkpoint::default();
         let mut files = Vec::new();
         let mut save = |made: &Checkpoint| files.push(made.clone());
-        let run = |saving: &mut Saving<'_>| {
-            let nodes = AssemblyNodes::Kept(8);
-            run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, nodes), saving, &mut ()).unwrap()
-        };
+        let run = |saving: &mut Saving<'_>| run_saved(&system, &method, &request, saving, None, &mut ()).unwrap();
         let mut saving = Saving { identity: &identity, from: None, every: Some(every), save: &mut save };
         assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
         assert_eq!(files.len() as u64, SCHEDULE.steps.div_ceil(every));
@@ -219,9 +218,9 @@ fn check_files(names: &[&str], every: u64) {
         }
     }
     let few = Schedule { t0: 0.0, step: 2.0, steps: 2 };
-    let run = run_assembly(&train.assembly, &Method::named("dla", None).unwrap(), &few, &start, 1, &mut ());
+    let run = harness::run(&system, &Method::named("dla", None).unwrap(), &request(&few, &start, 1), &mut ());
     let said = run.failure.unwrap().to_string();
-    assert!(run.record.steps == 0 && said.contains("fewer steps than pieces"), "{said}");
+    assert!(run.steps == 0 && said.contains("fewer steps than pieces"), "{said}");
 }
 
 #[test]
@@ -253,13 +252,12 @@ fn check_flywheel(names: &[&str]) {
             let fixed = harness::run(&Subject::from(&fixed), &method, &request, &mut ());
             let rounding = 16.0 * 80.0 * f64::EPSILON * (10.0 + fixed.energy.work.abs());
             for i in 0..3 {
-                assert_abs_diff_eq!(run.end.unwrapped(i), fixed.q[i], epsilon = rounding);
+                assert_abs_diff_eq!(run.q[i], fixed.q[i], epsilon = rounding);
             }
-            let all: (Vec<f64>, Vec<f64>) = (0..4).map(|i| (run.end.unwrapped(i), run.end.v(i))).unzip();
-            let [angle, relative] = alone.rotor(&all.0, &all.1).unwrap();
+            let [angle, relative] = alone.rotor(&run.q, &run.v).unwrap();
             assert_abs_diff_eq!(angle, fixed.q[3], epsilon = rounding);
             assert_abs_diff_eq!(relative, fixed.v[3], epsilon = rounding);
-            assert_abs_diff_eq!(run.record.energy.work, fixed.energy.work, epsilon = rounding);
+            assert_abs_diff_eq!(run.energy.work, fixed.energy.work, epsilon = rounding);
             assert_eq!(free, fixed.energy.work == 0.0, "{name}");
         }
     }
@@ -289,14 +287,14 @@ fn check_rotor(names: impl IntoIterator<Item = &'static str>) {
             [&bare, &free, &motor].map(|train| made(train, name, &train.start(&START, &[0.1, -0.3])));
         let most = 1e-12;
         for i in 0..9 {
-            assert_abs_diff_eq!(without.end.unwrapped(i), with.end.unwrapped(i), epsilon = most);
+            assert_abs_diff_eq!(without.q[i], with.q[i], epsilon = most);
         }
-        assert_abs_diff_eq!(with.end.v(9), 2.3, epsilon = most);
+        assert_abs_diff_eq!(with.v[9], 2.3, epsilon = most);
         // I_r phi'' = tau.
-        assert_abs_diff_eq!(driven.end.v(9), 2.3 + 4.0 * 0.5 / 0.7, epsilon = 10.0 * most);
-        assert!((driven.end.unwrapped(2) - with.end.unwrapped(2)).abs() > 0.5, "{name}");
-        assert!(driven.record.energy.work.abs() > 1.0, "{name}");
+        assert_abs_diff_eq!(driven.v[9], 2.3 + 4.0 * 0.5 / 0.7, epsilon = 10.0 * most);
+        assert!((driven.q[2] - with.q[2]).abs() > 0.5, "{name}");
+        assert!(driven.energy.work.abs() > 1.0, "{name}");
         let most = if name == "dla" { 1e-2 } else { 1e-4 };
-        assert!(driven.record.energy.max_error < most, "{name}: {:e}", driven.record.energy.max_error);
+        assert!(driven.energy.max_error < most, "{name}: {:e}", driven.energy.max_error);
     }
 }

@@ -2,11 +2,11 @@
 
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
-use assembly::{AssemblyError, AssemblyState};
-use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps, has_tangents};
+use assembly::{AssemblyState, AssemblySubject, assembly_method};
+use dla::{Checkpoint, CheckpointError, Event, Mechanism, RecommendError, Schedule, StepError, Substeps, has_tangents};
 use harness::{
-    AssemblyEvent, AssemblyNodes, METHODS, Method, Progress, Saving, assembly_end, assembly_method, recommend_assembly,
-    run_assembly, run_assembly_saved, run_assembly_watched,
+    METHODS, Method, Progress, Record, Request, Saving, Watched, integrate_pieces, recommend, run_saved,
+    run_saved_watched, run_watched,
 };
 use lagrangian::With;
 use sleigh::effects::{Drag, Thrust};
@@ -19,6 +19,41 @@ fn train() -> Train {
     let effects = (Drag::new(0.3, 0.1).unwrap(), Thrust::new(TimeFunction::Constant(0.4)).unwrap());
     let lead = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects };
     Train::new(lead, trailers, |trailer| trailer.sleigh).unwrap()
+}
+
+/// A run from such a start, of which so many samples are kept.
+pub(super) fn request(schedule: &Schedule, start: &AssemblyState, samples: u64) -> Request {
+    Request { schedule: *schedule, q: start.unwrapped(), v: start.v().to_vec(), samples }
+}
+
+/// It is made, and every so manieth node is kept.
+pub(super) fn made(train: &Train, method: &Method, schedule: &Schedule, start: &AssemblyState, every: u64) -> Watched {
+    watched((train, start), method, schedule, &[], every)
+}
+
+/// The same with an eye on events.
+pub(super) fn watched(
+    (train, start): (&Train, &AssemblyState),
+    method: &Method,
+    schedule: &Schedule,
+    events: &[Event<'_>],
+    every: u64,
+) -> Watched {
+    let request = request(schedule, start, schedule.steps.div_ceil(every));
+    run_watched(&AssemblySubject::from(&train.assembly), method, &request, (events, 4), Some(every), &mut ())
+}
+
+/// The configuration at its end, nothing looking on.
+pub(super) fn end_of(train: &Train, method: &Method, schedule: &Schedule, start: &AssemblyState) -> Vec<f64> {
+    let system = AssemblySubject::from(&train.assembly);
+    let mut state = system.state(&start.unwrapped(), start.v());
+    integrate_pieces(&system, method, schedule, &mut state, &mut ()).unwrap();
+    state.unwrapped()
+}
+
+/// All of a record but the time.
+pub(super) fn bits(record: &Record) -> String {
+    format!("{:?}", Record { wall_seconds: 0.0, ..record.clone() })
 }
 
 fn steps(steps: u64) -> Schedule {
@@ -42,13 +77,14 @@ fn check_measured(count: u64) {
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     let run = |name: &str| {
         let method = Method::named(name, None).unwrap();
-        run_assembly(&train.assembly, &method, &schedule, &start, 10, &mut ())
+        made(&train, &method, &schedule, &start, 10)
     };
     let [second, fourth] = ["dla", "dla4"].map(run);
     for run in [&second, &fourth] {
         let record = &run.record;
         let nodes = count as usize / 10 + 1;
-        assert_eq!((record.steps, run.nodes.len(), record.samples.len()), (count, nodes, nodes));
+        let kept = run.trajectory.as_ref().unwrap().nodes().len();
+        assert_eq!((record.steps, kept, record.samples.len()), (count, nodes, nodes));
         assert_abs_diff_eq!(record.t, 0.02 * count as f64, epsilon = 1e-12);
         assert!(record.constraint_max < 1e-14 && record.leaf_max.unwrap() < 1e-14);
         assert!(record.energy.work.abs() > 0.1 * count as f64 / 200.0);
@@ -65,7 +101,7 @@ fn other_methods_refuse_trains() {
     let train = train();
     let start = train.start(&SleighState::default(), &[]);
     let method = Method::named("rk4", None).unwrap();
-    let run = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 10, &mut ());
+    let run = made(&train, &method, &SCHEDULE, &start, 10);
     assert!(run.record.refusal().unwrap().contains("dla8"));
     assert_eq!(run.record.steps, 0);
 }
@@ -76,10 +112,10 @@ fn rows_say_what_methods_do() {
     let train = train();
     for info in METHODS {
         let method = Method::named(info.name, None).unwrap();
-        let made = assembly_method(&train.assembly, &method);
+        let made = assembly_method(&train.assembly, info.kind);
         assert_eq!(made.is_ok(), info.assemblies, "{}", info.name);
         assert_eq!(has_tangents(&method).is_ok(), info.tangent.is_ok(), "{}", info.name);
-        let Err(AssemblyError::Unsupported { reason }) = made else { continue };
+        let Err(StepError::Unsupported { reason }) = made else { continue };
         // The refusal names those that do.
         let named: Vec<&str> =
             reason.split([' ', ',']).filter(|word| METHODS.iter().any(|m| m.name == *word)).collect();
@@ -105,9 +141,10 @@ fn an_interrupted_run_keeps_what_is_made() {
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[]);
     let method = Method::named("dla", None).unwrap();
     let long = Schedule { steps: 100_000_000, ..SCHEDULE };
-    let run = run_assembly(&train.assembly, &method, &long, &start, long.steps, &mut Impatient);
+    let (system, request) = (AssemblySubject::from(&train.assembly), request(&long, &start, 1));
+    let run = run_watched(&system, &method, &request, (&[], 1), Some(long.steps), &mut Impatient);
     assert!(run.record.interrupted && run.record.steps > 0);
-    assert_abs_diff_eq!(run.nodes.last().unwrap().t, run.record.t);
+    assert_abs_diff_eq!(run.trajectory.unwrap().nodes().last().unwrap().t, run.record.t);
 }
 
 #[test]
@@ -127,34 +164,26 @@ fn check_events(places: [f64; 2]) {
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     for name in ["dla", "dla4"] {
         let method = Method::named(name, None).unwrap();
-        let x = |value: f64| move |_: f64, state: &AssemblyState| state.unwrapped(0) - value;
-        let events = [AssemblyEvent::new("first", false, x(places[0])), AssemblyEvent::new("last", true, x(places[1]))];
-        let (run, crossings, _) = run_assembly_watched(
-            &train.assembly,
-            &method,
-            &SCHEDULE,
-            (&start, AssemblyNodes::Kept(1000)),
-            (&events, 4),
-            &mut (),
-        );
+        let x = |value: f64| move |_: f64, q: &[f64], _: &[f64]| q[0] - value;
+        let events = [Event::new("first", x(places[0])), Event::new("last", x(places[1])).terminal()];
+        let run = watched((&train, &start), &method, &SCHEDULE, &events, 1000);
+        let crossings = &run.crossings;
         assert_eq!(crossings.iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [0, 1]);
         for (crossing, value) in crossings.iter().zip(places) {
             assert!(crossing.rising && crossing.within < 1e-15);
-            assert_abs_diff_eq!(crossing.state.unwrapped(0), value, epsilon = 1e-15);
-            assert!(train.assembly.misses(crossing.t, &crossing.state).iter().all(|miss| *miss < 1e-14));
+            assert_abs_diff_eq!(crossing.state.unwrapped()[0], value, epsilon = 1e-15);
+            let misses = train.assembly.misses(crossing.t, crossing.state.held().unwrap());
+            assert!(misses.iter().all(|miss| *miss < 1e-14));
         }
-        assert_eq!(run.end, crossings[1].state);
+        assert_eq!(
+            (&run.record.q[..], &run.record.v[..]),
+            (&crossings[1].state.unwrapped()[..], crossings[1].state.v())
+        );
         assert_abs_diff_eq!(run.record.t, crossings[1].t);
-        assert_eq!(run.nodes.len(), 2);
+        assert_eq!(run.trajectory.as_ref().unwrap().nodes().len(), 2);
         assert_eq!(run.record.steps, crossings[1].k + 1);
         assert!(run.record.failure.is_none() && !run.record.interrupted);
     }
-}
-
-/// All but the time.
-fn bits(run: &harness::Assembled) -> String {
-    let record = harness::Record { wall_seconds: 0.0, ..run.record.clone() };
-    format!("{record:?} {:?}", run.end)
 }
 
 #[test]
@@ -174,14 +203,13 @@ fn check_saved(count: u64, every: u64) {
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     for name in ["dla", "dla4"] {
         let method = Method::named(name, None).unwrap();
-        let whole = run_assembly(&train.assembly, &method, &schedule, &start, 10, &mut ());
+        let (system, request) = (AssemblySubject::from(&train.assembly), request(&schedule, &start, 10));
+        let whole = harness::run(&system, &method, &request, &mut ());
         let identity = Checkpoint::of([("method", name.to_owned())]);
         let mut files = Vec::new();
         let mut save = |made: &Checkpoint| files.push(made.to_text());
         let mut saving = Saving { identity: &identity, from: None, every: Some(every), save: &mut save };
-        let run = |saving: &mut Saving<'_>| {
-            run_assembly_saved(&train.assembly, &method, &schedule, (&start, AssemblyNodes::Kept(10)), saving, &mut ())
-        };
+        let run = |saving: &mut Saving<'_>| run_saved(&system, &method, &request, saving, None, &mut ());
         let parts = run(&mut saving).unwrap();
         assert_eq!(bits(&parts), bits(&whole));
         assert_eq!(files.len() as u64, count.div_ceil(every));
@@ -213,23 +241,22 @@ fn a_step_for_a_tolerance_in_full() {
 fn check_recommended(duration: f64, tolerance: f64) {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
-    let last = |state: &AssemblyState| [state.unwrapped(9), state.unwrapped(10), state.unwrapped(11)];
     let dla = Method::named("dla", None).unwrap();
-    let found = recommend_assembly(&train.assembly, &dla, &start, duration, tolerance, last).unwrap();
+    let system = AssemblySubject::from(&train.assembly);
+    let (q, v) = (start.unwrapped(), start.v());
+    let of = |method: &Method| recommend(&system, method, (&q, v), (duration, tolerance), &mut ());
+    let found = of(&dla).unwrap();
     let end = |method: &Method, steps: u64| {
-        let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
-        last(&assembly_end(&train.assembly, method, &schedule, &start, &mut ()).unwrap().unwrap())
+        end_of(&train, method, &Schedule { t0: 0.0, step: duration / steps as f64, steps }, &start)
     };
     let exact = end(&Method::named("dla8", None).unwrap(), (duration / 0.02).round() as u64);
     let error = |steps: u64| {
-        let pairs = end(&dla, steps).into_iter().zip(exact);
+        let pairs = end(&dla, steps).into_iter().zip(&exact);
         pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
     };
     println!("{found:?}, {:e}", error(found.steps));
     assert!(error(found.steps) < tolerance && error(found.steps / 4) > tolerance);
-    let refused =
-        recommend_assembly(&train.assembly, &Method::named("rk4", None).unwrap(), &start, duration, tolerance, last);
-    assert!(matches!(refused, Err(RecommendError::Fails { .. })));
+    assert!(matches!(of(&Method::named("rk4", None).unwrap()), Err(RecommendError::Fails { .. })));
 }
 
 /// A train that is to turn by a radian and more in a step of a second.
@@ -244,26 +271,25 @@ fn seconds(steps: u64) -> Schedule {
 }
 
 /// Driven in parts; on a way of some metres its end is that of short steps.
-fn in_parts(name: &str, long: &Schedule, right: &AssemblyState) -> (Method, harness::Assembled) {
+fn in_parts(name: &str, long: &Schedule, right: &[f64]) -> (Method, Record) {
     let (train, start) = turning();
     let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
-    let run = run_assembly(&train.assembly, &method, long, &start, 1, &mut ());
+    let run = made(&train, &method, long, &start, 1).record;
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
-    let substeps = run.record.substeps.unwrap();
-    assert!(substeps.divided > 0 && run.record.steps == long.steps, "{name}: {substeps:?}");
-    assert!(run.record.constraint_max < 1e-13 && run.record.leaf_max.unwrap() < 1e-13, "{name}: {:?}", run.record);
-    for i in 0..right.len() {
-        assert_abs_diff_eq!(run.end.unwrapped(i), right.unwrapped(i), epsilon = 3e-2);
+    let substeps = run.substeps.unwrap();
+    assert!(substeps.divided > 0 && run.steps == long.steps, "{name}: {substeps:?}");
+    assert!(run.constraint_max < 1e-13 && run.leaf_max.unwrap() < 1e-13, "{name}: {run:?}");
+    for (end, right) in run.q.iter().zip(right) {
+        assert_abs_diff_eq!(end, right, epsilon = 3e-2);
     }
-    assert!(run.record.energy.max_error < 1e-2 * run.record.energy.initial, "{name}: {:?}", run.record.energy);
+    assert!(run.energy.max_error < 1e-2 * run.energy.initial, "{name}: {:?}", run.energy);
     (method, run)
 }
 
-fn short_steps(step: f64, steps: u64) -> AssemblyState {
+fn short_steps(step: f64, steps: u64) -> Vec<f64> {
     let (train, start) = turning();
     let plain = Method::named("dla4", None).unwrap();
-    let schedule = Schedule { t0: 0.0, step, steps };
-    assembly_end(&train.assembly, &plain, &schedule, &start, &mut ()).unwrap().unwrap()
+    end_of(&train, &plain, &Schedule { t0: 0.0, step, steps }, &start)
 }
 
 #[test]
@@ -276,11 +302,11 @@ fn long_steps_of_trains_are_made_in_parts() {
 fn a_long_step_of_a_train_is_divided_so_far() {
     let (train, start) = turning();
     let plain = Method::named("dla4", None).unwrap();
-    assert!(run_assembly(&train.assembly, &plain, &seconds(6), &start, 1, &mut ()).failure.is_some());
+    assert!(made(&train, &plain, &seconds(6), &start, 1).record.failure.is_some());
     let few = plain.with_substeps(Substeps::new(1, 10));
-    let run = run_assembly(&train.assembly, &few, &seconds(6), &start, 1, &mut ());
-    assert!(run.failure.is_some() && run.record.substeps.unwrap().undivided.is_some(), "{:?}", run.record);
-    assert_eq!(run.record.energy.work.abs().to_bits(), 0);
+    let run = made(&train, &few, &seconds(6), &start, 1).record;
+    assert!(run.failure.is_some() && run.substeps.unwrap().undivided.is_some(), "{run:?}");
+    assert_eq!(run.energy.work.abs().to_bits(), 0);
 }
 
 /// Also from a checkpoint and up to an event.
@@ -295,19 +321,22 @@ fn long_steps_of_trains_are_made_in_parts_at_length() {
         let mut save = |made: &Checkpoint| files.push(made.clone());
         let identity = Checkpoint::default();
         let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut save };
-        let kept = || (&start, AssemblyNodes::Kept(1));
-        let whole = run_assembly_saved(&train.assembly, &method, &long, kept(), &mut saving, &mut ()).unwrap();
+        let (system, request) = (AssemblySubject::from(&train.assembly), request(&long, &start, long.steps));
+        let whole = run_saved(&system, &method, &request, &mut saving, None, &mut ()).unwrap();
         assert_eq!(bits(&whole), bits(&run), "{name}");
         for file in &files {
             let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
-            let again = run_assembly_saved(&train.assembly, &method, &long, kept(), &mut saving, &mut ());
+            let again = run_saved(&system, &method, &request, &mut saving, None, &mut ());
             assert_eq!(bits(&again.unwrap()), bits(&run), "{name}");
         }
 
-        let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
-        let (ended, crossings, _) =
-            run_assembly_watched(&train.assembly, &method, &long, kept(), (&events, 4), &mut ());
-        assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
-        assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
+        let events = [Event::new("x", |_, q, _| q[0] - 1.0).terminal()];
+        let ended = watched((&train, &start), &method, &long, &events, 1);
+        assert_eq!((ended.crossings.len(), ended.record.t), (1, ended.crossings[0].t), "{name}");
+        assert_abs_diff_eq!(ended.record.q[0], 1.0, epsilon = 1e-9);
+        // Events are saved as those of other systems are.
+        let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut |_| () };
+        let saved = run_saved_watched(&system, &method, &request, (&events, 4), &mut saving, None, &mut ()).unwrap();
+        assert_eq!((saved.crossings.len(), bits(&saved.record)), (1, bits(&ended.record)), "{name}");
     }
 }

@@ -1,9 +1,10 @@
 //! The work that is taken off the energy of an assembly.
 
+use super::trains::{made, request, watched};
 use assembly::parts::{Trailer, Train};
-use assembly::{Assembly, AssemblyState};
-use dla::{Schedule, Subject};
-use harness::{AssemblyEvent, AssemblyNodes, Method, Record, Request, run_assembly, run_assembly_watched};
+use assembly::{Assembly, AssemblyState, AssemblySubject};
+use dla::{Event, Schedule, Subject};
+use harness::{Method, Record};
 use lagrangian::linear::larger;
 use lagrangian::{Piecewise, System, With};
 use sleigh::effects::{Drag, Thrust, Torque};
@@ -42,9 +43,9 @@ fn schedule(step: f64, duration: f64) -> Schedule {
 
 fn measured((train, start): &(Train, AssemblyState), name: &str, schedule: &Schedule) -> Record {
     let method = Method::named(name, None).unwrap();
-    let run = run_assembly(&train.assembly, &method, schedule, start, schedule.steps, &mut ());
+    let run = made(train, &method, schedule, start, schedule.steps).record;
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
-    run.record
+    run
 }
 
 #[test]
@@ -82,10 +83,8 @@ fn check_ended_step(time: f64) {
     let (train, start) = driven();
     let schedule = schedule(0.1, 20.0);
     let method = Method::named("dla8", None).unwrap();
-    let at = |t: f64, _: &AssemblyState| t - time;
-    let events = [AssemblyEvent::new("t", true, at)];
-    let nodes = (&start, AssemblyNodes::Kept(1000));
-    let (run, ..) = run_assembly_watched(&train.assembly, &method, &schedule, nodes, (&events, 4), &mut ());
+    let events = [Event::new("t", |t, _, _| t - time).terminal()];
+    let run = watched((&train, &start), &method, &schedule, &events, 1000);
     assert!((run.record.t - time).abs() < 1e-12);
     println!("{:e}", run.record.energy.max_error);
     assert!(run.record.energy.max_error < 1e-10, "{:e}", run.record.energy.max_error);
@@ -115,8 +114,8 @@ fn check_one_sleigh(names: &[&str], duration: f64) {
         let schedule = schedule(0.05, duration);
         for name in names {
             let method = Method::named(name, None).unwrap();
-            let own = run_assembly(&alone, &method, &schedule, &start, 400, &mut ()).record;
-            let request = Request { schedule, q: q.into(), v: v.into(), samples: 2 };
+            let request = request(&schedule, &start, 2);
+            let own = harness::run(&AssemblySubject::from(&alone), &method, &request, &mut ());
             let fixed = harness::run(&Subject::from(system), &method, &request, &mut ());
             let (own, fixed) = (own.energy, fixed.energy);
             println!("{name} {:e} {:e} {:e} {:e}", own.work, fixed.work, own.max_error, fixed.max_error);
@@ -144,12 +143,12 @@ fn pushed_trains_fold_and_go_on() {
     let start = train.start(&SleighState { speed: -1.0, turn_rate: 0.05, ..START }, &[0.01, -0.02]);
     let method = Method::named("dla8", None).unwrap();
     let schedule = schedule(0.02, 200.0);
-    let run = run_assembly(&train.assembly, &method, &schedule, &start, 50, &mut ());
+    let run = made(&train, &method, &schedule, &start, 50).record;
     assert!(run.failure.is_none(), "{:?}", run.failure);
-    let folded = run.nodes.iter().fold(0.0, |most, node| larger(most, node.q[5] - node.q[2]));
-    println!("{:e} J of {:e} J, folded by {folded} rad", run.record.energy.max_error, run.record.energy.initial);
+    let folded = run.samples.iter().fold(0.0, |most, node| larger(most, node.q[5] - node.q[2]));
+    println!("{:e} J of {:e} J, folded by {folded} rad", run.energy.max_error, run.energy.initial);
     assert!(folded > 0.9 * std::f64::consts::FRAC_PI_2);
     // Rounding of 150,000 steps of `dla`, which walks at random.
-    assert!(run.record.energy.max_error < 1e-13);
-    assert!(run.record.constraint_max < 1e-14 && run.record.leaf_max.unwrap() < 1e-14);
+    assert!(run.energy.max_error < 1e-13);
+    assert!(run.constraint_max < 1e-14 && run.leaf_max.unwrap() < 1e-14);
 }

@@ -85,10 +85,7 @@ impl DifferentiatedMotion<'_> {
     fn node(&self, at: &Moving) -> Node {
         let mechanism = self.system.mechanism();
         let piece = mechanism.smooth_piece(at.t);
-        let view = View { system: &*piece, k: 0, t: at.t, state: &at.state };
-        let (energy, constraint) = (view.energy(), view.constraint());
-        let (q, v) = (at.state.unwrapped(), at.state.v().to_vec());
-        Node { k: 0, t: at.t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
+        Node::of(&View { system: &*piece, k: 0, t: at.t, state: &at.state }, f64::NAN, None)
     }
 }
 

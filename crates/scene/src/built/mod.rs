@@ -4,6 +4,7 @@ mod sleigh;
 mod text;
 
 use ::text::{TextMechanics, TextStart};
+use assembly::parts::Train;
 use dla::{Mechanism, Node, Size};
 use std::fmt;
 use systems::{Column, SceneSystem, Started};
@@ -116,7 +117,12 @@ impl<'a> Built<'a> {
             Self::Sleigh(system) => sleigh::quantities(*system),
             Self::Text(system) => text::quantities(system.model()),
         };
-        quantities.push(Quantity { name: ENERGY.to_owned(), unit: "J".to_owned(), angle: false });
+        if self.train().is_some() {
+            // The quantities of a train are those of its first blade.
+            quantities.truncate(sleigh::IN_STATE);
+        } else {
+            quantities.push(Quantity { name: ENERGY.to_owned(), unit: "J".to_owned(), angle: false });
+        }
         quantities
     }
 
@@ -236,6 +242,12 @@ impl<'a> Built<'a> {
             Self::Sleigh(system) => Some(system),
             Self::Text(_) => None,
         }
+    }
+
+    /// The train, if blades follow a sleigh.
+    #[must_use]
+    pub fn train(&self) -> Option<&'a Train> {
+        self.sleigh()?.train()
     }
 }
 

@@ -15,6 +15,7 @@ use crate::table::TomlTable;
 use crate::{BuiltScene, Overrides, RunSettings, Scene};
 use ::sleigh::SleighError;
 use ::text::{Family, TextMechanics, TextModel, TextStart, Words};
+use assembly::AssemblyError;
 use dla::{Schedule, fitted};
 use std::fmt;
 use std::sync::Arc;
@@ -66,6 +67,9 @@ pub enum BuildError {
     /// The error of a sleigh.
     #[error(transparent)]
     Sleigh(#[from] SleighError),
+    /// Of a train.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
     /// A system of text is too large.
     #[error("the system has more coordinates than this program supports")]
     NoRoom,
@@ -147,8 +151,19 @@ impl AnyScene {
     /// [`BuildError`] where there is no such system.
     pub fn built(&self) -> Result<BuiltScene, BuildError> {
         match self {
-            Self::Sleigh(scene) => Ok(scene.built()?),
+            Self::Sleigh(scene) => scene.built(),
             Self::Text(scene) => scene.built(),
+        }
+    }
+
+    /// As [`built`](Self::built), for an analysis, which has no trains.
+    ///
+    /// # Errors
+    /// As [`built`](Self::built), and [`SleighError::Train`] of a train.
+    pub fn built_for_analysis(&self) -> Result<BuiltScene, BuildError> {
+        match self {
+            Self::Sleigh(scene) if scene.has_trailers() => Err(SleighError::Train.into()),
+            scene => scene.built(),
         }
     }
 

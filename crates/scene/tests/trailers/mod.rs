@@ -1,28 +1,41 @@
 //! Scenes with trailers: assemblies.
 
-use scene::Scene;
-use sleigh::SleighError;
+use scene::{AnyScene, BuildError, BuiltScene, Scene};
+use sleigh::{SleighError, SleighState};
 
 const METHODS: &[&str] = &["dla"];
 const TRAIN: &str = include_str!("../../../../docs/guide/train.toml");
 
+/// What the constraints of a system miss at its start: velocities, and positions.
+fn misses(built: &BuiltScene) -> [f64; 2] {
+    let (mechanism, BuiltScene { q, v, .. }) = (built.system().mechanism(), built);
+    [mechanism.largest_residual(0.0, q, v), mechanism.largest_position(0.0, &mechanism.state(q, v)).unwrap()]
+}
+
+fn first_blade(built: &BuiltScene) -> SleighState {
+    built.system().sleigh().unwrap().sleigh_state(&built.q, &built.v)
+}
+
 #[test]
 fn a_scene_with_trailers_is_a_train() {
     let scene = Scene::parse(TRAIN, "train.toml", METHODS).unwrap();
-    let (train, start) = scene.train().unwrap().unwrap();
-    assert_eq!(train.trailers().len(), 12);
-    assert_eq!((train.assembly.coordinates(), train.assembly.rows()), (39, 13 + 24));
-    let misses = train.assembly.misses(0.0, &start);
+    let built = scene.built().unwrap();
+    let mechanism = built.system().mechanism();
+    assert_eq!(built.system().train().unwrap().trailers().len(), 12);
+    assert_eq!(mechanism.size(), dla::Size { n: 39, m: 13 + 24 });
+    let misses = misses(&built);
     // Half a unit in the last place of coordinates of up to eight metres.
     assert!(misses[0] < 1e-15 && misses[1] < 2e-15, "{misses:?}");
-    assert_eq!(train.blade(&start, 0), scene.start);
+    assert_eq!(first_blade(&built), scene.start);
     // The hills are under every blade.
     let level = Scene::parse(&TRAIN.replace("height = 0.6", "height = 0.0"), "train.toml", METHODS).unwrap();
-    let (level, _) = level.train().unwrap().unwrap();
-    assert!(train.assembly.energy(0.0, &start) > level.assembly.energy(0.0, &start));
-    // It is no static system, and another scene is no train.
-    assert_eq!(scene.built().err(), Some(SleighError::Train));
-    assert!(Scene::load("turnaround", METHODS).unwrap().train().unwrap().is_none());
+    let level = level.built().unwrap();
+    let lower = level.system().mechanism().energy(0.0, &built.q, &built.v);
+    assert!(mechanism.energy(0.0, &built.q, &built.v) > lower);
+    // It has no analyses, and another scene is no train.
+    let refused = AnyScene::Sleigh(Box::new(scene)).built_for_analysis();
+    assert_eq!(refused.err(), Some(BuildError::Sleigh(SleighError::Train)));
+    assert!(Scene::load("turnaround", METHODS).unwrap().built().unwrap().system().train().is_none());
 }
 
 /// Whatever acts on a sleigh acts on the first blade of a train; a velocity that is imposed is that of the start.
@@ -40,9 +53,9 @@ fn every_effect_goes_with_trailers() {
         ("kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [0.0, 1.0] }", 39, None),
     ] {
         let scene = Scene::parse(&format!("{TRAIN}\n[[effects]]\n{entry}\n"), "train.toml", METHODS).unwrap();
-        let (train, start) = scene.train().unwrap().unwrap();
-        assert_eq!(train.assembly.coordinates(), coordinates, "{entry}");
-        let (first, misses) = (train.blade(&start, 0), train.assembly.misses(0.0, &start));
+        let built = scene.built().unwrap();
+        assert_eq!(built.q.len(), coordinates, "{entry}");
+        let (first, misses) = (first_blade(&built), misses(&built));
         assert!(misses[0] < 1e-14 && misses[1] < 2e-15, "{entry}: {misses:?}");
         assert_eq!(speed.is_some(), first != scene.start, "{entry}");
         if entry.contains("values = [0.7") {
@@ -53,8 +66,7 @@ fn every_effect_goes_with_trailers() {
     let pushed =
         format!("{TRAIN}\n[[effects]]\nkind = \"thrust\"\nforce = {{ times = [0.0, 1.0], values = [0.0, 1.0] }}\n");
     let scene = Scene::parse(&pushed, "train.toml", METHODS).unwrap();
-    let (train, _) = scene.train().unwrap().unwrap();
-    assert_eq!(train.assembly.jump_times(0.0, 5.0), [1.0]);
+    assert_eq!(scene.built().unwrap().system().mechanism().jump_times(0.0, 5.0), [1.0]);
     assert_eq!(scene.jumps().unwrap(), [1.0]);
 }
 

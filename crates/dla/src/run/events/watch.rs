@@ -109,10 +109,12 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         if self.ended.is_some() {
             return ControlFlow::Break(());
         }
+        // No state is kept for nothing.
+        if self.events.is_empty() {
+            return ControlFlow::Continue(());
+        }
         if let Some((t0, start)) = self.before.take() {
-            if !self.events.is_empty() {
-                self.look_within(node, (t0, &start));
-            }
+            self.look_within(node, (t0, &start));
             if let Some((crossing, _)) = &self.ended {
                 let (system, method, h) = (node.system, self.method, node.t - t0);
                 let step = EventInterval { system, method, t0, h, start: &start, end: node.state };
