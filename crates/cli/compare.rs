@@ -275,6 +275,5 @@ fn series_of(system: &Built<'_>, record: &Record) -> Series {
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),
         failed: record.failure.is_some(),
         diverged: record.energy.drift.verdict == DriftVerdict::Diverged,
-        ..Series::default()
     }
 }

@@ -39,7 +39,7 @@ impl Linear {
         let pivot = self.factor.factorise(&self.pattern, &self.values)?;
         if pivot < SINGULAR {
             let named = |assembly| dependent(assembly, &self.pattern, &mut self.values, &mut self.factor);
-            return Err(AssemblyFault::Singular { stage, pivot, constraints: of.map_or([None; 6], named) }.into());
+            return Err(AssemblyFault::Singular { stage, pivot, constraints: of.map_or([None; 4], named) }.into());
         }
         Ok(())
     }

@@ -27,7 +27,7 @@ pub(crate) fn dependent(
     let n = assembly.coordinates();
     // No row of a model is orthogonal to these numbers by its symmetry.
     let mut x: Vec<f64> = (0..pattern.unknowns()).map(|i| if i < n { 0.0 } else { 1.0 + (i as f64).sin() }).collect();
-    let mut named = [None; 6];
+    let mut named = [None; 4];
     if factorised.is_err() {
         return named;
     }

@@ -20,8 +20,8 @@ impl fmt::Display for ConstraintRow {
     }
 }
 
-/// Constraints that depend on one another, the heaviest first.
-pub type DependentRows = [Option<ConstraintRow>; 6];
+/// Constraints that depend on one another, the four heaviest, the heaviest first.
+pub type DependentRows = [Option<ConstraintRow>; 4];
 
 /// The error of a step of an assembly of many elements, if it tells more than the error of one system.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
