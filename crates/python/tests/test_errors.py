@@ -140,6 +140,8 @@ def test_ctrl_c_ends_everything_at_once_and_keeps_what_is_done(what: str) -> Non
     work, known = LONG[what]
     code = f"""
 import noslip, os, signal, threading, time
+# Also below a shell that ignores the signal, as it does for commands in its background.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 STUCK = {STUCK!r}
 def interrupt():
     global asked

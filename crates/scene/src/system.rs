@@ -21,7 +21,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`SleighError`] if an effect has impossible parameters, which cannot happen to a scene read from a file; or if the scene is a
-    /// train, which [`train`](Self::train) makes.
+    /// train, which [`built`](Self::built) makes.
     pub fn system(&self) -> Result<Started, SleighError> {
         if self.has_trailers() {
             return Err(SleighError::Train);
