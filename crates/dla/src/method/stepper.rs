@@ -30,26 +30,27 @@ impl Method {
     #[must_use]
     #[inline(never)]
     pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<'static, N, M> {
-        match self.info().kind {
-            MethodKind::Dla => Box::new(Rebased::new(Dla::midpoint())),
-            MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => {
-                Box::new(Rebased::new(Dla::new(self.rule(), self.rule())))
-            }
-            MethodKind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
-            MethodKind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
-            MethodKind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
-            MethodKind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
-            MethodKind::Gauss(stages) => Box::new(Rebased::new(gauss(stages)).along()),
-            MethodKind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(self.tolerance()))),
-            MethodKind::Taylor => Box::new(NoSeries),
-            MethodKind::Energy(stages) => Box::new(Rebased::new(energy(stages)).along()),
-            MethodKind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
-            MethodKind::Rk4 => Box::new(Rk4),
-            MethodKind::Rk4Projected => Box::new(Rk4Projected),
-            MethodKind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced).along()),
-            MethodKind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default()).along()),
-            MethodKind::Dop853 => Box::new(Rebased::new(Dop853::<N, M>::new(self.tolerance()))),
-        }
+        let (method, along): (Stepper<'static, N, M>, bool) = match self.info().kind {
+            MethodKind::Dla => (Box::new(Dla::midpoint()), false),
+            MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => (Box::new(Dla::new(self.rule(), self.rule())), false),
+            MethodKind::Composed(order) => (Box::new(composed(order, Dla::midpoint())), false),
+            MethodKind::Lobatto(3) => (Box::new(Lobatto::<3>::new()), false),
+            MethodKind::Lobatto(4) => (Box::new(Lobatto::<4>::new()), false),
+            MethodKind::Lobatto(_) => (Box::new(Lobatto::<5>::new()), false),
+            MethodKind::Gauss(stages) => (Box::new(gauss(stages)), true),
+            MethodKind::GaussAdaptive => (Box::new(GaussAdaptive::new::<8>(self.tolerance())), false),
+            MethodKind::Energy(stages) => (Box::new(energy(stages)), true),
+            MethodKind::Gni => (Box::new(Gni::<N>::default()), false),
+            MethodKind::Rk4Reduced => (Box::new(Rk4Reduced), true),
+            MethodKind::ImplicitMidpoint => (Box::new(ImplicitMidpoint::default()), true),
+            MethodKind::Dop853 => (Box::new(Dop853::<N, M>::new(self.tolerance())), false),
+            MethodKind::Taylor => return Box::new(NoSeries),
+            MethodKind::Rk4 => return Box::new(Rk4),
+            MethodKind::Rk4Projected => return Box::new(Rk4Projected),
+        };
+        // One type of `Rebased` for all of them.
+        let method = Rebased::new(method);
+        Box::new(if along { method.along() } else { method })
     }
 }
 
