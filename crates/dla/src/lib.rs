@@ -92,6 +92,8 @@ pub use run::{
     Work, Zero, Zeros, again, close_crossings, drive, drive_part, fitted, make_steps, onto_constraint, piece_by_piece,
     pieces, recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
 };
+#[cfg(feature = "shapes")]
+pub use run::{CompiledShape, PARAMETERS, Shapes};
 pub use runaway::Runaway;
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,

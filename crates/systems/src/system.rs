@@ -1,7 +1,7 @@
 use crate::power::{self, SceneBody, SceneEffects};
 use crate::{AnyEffect, Column, EffectList, EffectPower, SleighFamily, columns};
 use assembly::parts::Train;
-use dla::{Mechanism, Member, Node, OwnMethods, ParametrisedMechanism, Stepper, Subject};
+use dla::{CompiledShape, Mechanism, Node, OwnMethods, ParametrisedMechanism, Shapes, Stepper};
 use lagrangian::{Piecewise, System, With};
 use sleigh::closed::ClosedForm;
 use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
@@ -60,24 +60,15 @@ pub trait SceneSystem: Send + Sync {
 /// A system of a shape: three coordinates or four, with a rotor; one constraint, the blade, or more, where velocities are imposed.
 struct Shaped<S, const N: usize, const M: usize>(S);
 
-impl<B, E, const N: usize, const M: usize> Shaped<With<B, E>, N, M>
-where
-    Self: OwnMethods<N, M>,
-    With<B, E>: System<N, M> + Piecewise,
-{
-    fn subject(&self) -> Subject<'_, N, M> {
-        Subject::new(&self.0, self)
-    }
-}
-
 impl<B, E, const N: usize, const M: usize> SceneSystem for Shaped<With<B, E>, N, M>
 where
     With<B, E>: System<N, M> + Piecewise + Send + Sync,
     B: SceneBody<N, M>,
     E: SceneEffects<B, N>,
+    Shapes: CompiledShape<N, M>,
 {
     fn mechanism(&self) -> Box<dyn Mechanism + '_> {
-        Box::new(self.subject())
+        Shapes::mechanism(&self.0, self)
     }
 
     fn member<'a>(&'a self, family: &'a SleighFamily) -> Option<Box<dyn ParametrisedMechanism + 'a>> {
@@ -85,8 +76,7 @@ where
         if const { M > 1 } {
             return None;
         }
-        let member = Member::new(self.subject(), family, family.values());
-        if family.coordinates() == N { Some(Box::new(member)) } else { None }
+        (family.coordinates() == N).then(|| Shapes::member(&self.0, self, family, family.values()))
     }
 
     fn sleigh_state(&self, q: &[f64], v: &[f64]) -> SleighState {
@@ -204,6 +194,7 @@ fn with_rotor<B, E, const M: usize>(
 where
     B: SceneBody<3, M> + Piecewise + Clone + Send + Sync + 'static,
     E: SceneEffects<B, 3> + SceneEffects<Flywheel<B>, 4> + Piecewise + Send + Sync + 'static,
+    Shapes: CompiledShape<3, M> + CompiledShape<4, M>,
 {
     let (q, v) = start.to_coordinates();
     Ok(match rotor {

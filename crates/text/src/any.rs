@@ -1,6 +1,6 @@
 use crate::family::FamilySystem;
 use crate::{FREE, Family, TextModel, TextStart, TextSystem};
-use dla::{Mechanism, Member, ParametrisedMechanism, Subject};
+use dla::{CompiledShape, Mechanism, ParametrisedMechanism, Shapes};
 use std::sync::Arc;
 
 /// Maximum number of coordinates of a system of text.
@@ -30,18 +30,21 @@ struct Shaped<const N: usize, const M: usize> {
     family: Option<(FamilySystem<N, M>, [f64; FREE])>,
 }
 
-impl<const N: usize, const M: usize> TextMechanics for Shaped<N, M> {
+impl<const N: usize, const M: usize> TextMechanics for Shaped<N, M>
+where
+    Shapes: CompiledShape<N, M>,
+{
     fn model(&self) -> &TextModel {
         self.system.model()
     }
 
     fn mechanism(&self) -> Box<dyn Mechanism + '_> {
-        Box::new(Subject::new(&self.system, &()))
+        Shapes::mechanism(&self.system, &())
     }
 
     fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>> {
         let (family, values) = self.family.as_ref()?;
-        Some(Box::new(Member::new(Subject::new(&self.system, &()), family, *values)))
+        Some(Shapes::member(&self.system, &(), family, *values))
     }
 }
 
@@ -71,7 +74,10 @@ fn shaped<const N: usize, const M: usize>(
     model: &Arc<TextModel>,
     start: &TextStart,
     family: Option<&Family>,
-) -> Option<Box<dyn TextMechanics>> {
+) -> Option<Box<dyn TextMechanics>>
+where
+    Shapes: CompiledShape<N, M>,
+{
     let system = TextSystem::<N, M>::new(Arc::clone(model), 0.0, &start.q)?;
     let family = family.and_then(|family| Some((family.shaped(0.0, &start.q)?, *family.values())));
     Some(Box::new(Shaped { system, family }))

@@ -7,7 +7,7 @@ use std::array::from_fn;
 use std::sync::Arc;
 
 /// Maximum number of free parameters: as many as a number carries directions.
-pub const FREE: usize = 8;
+pub const FREE: usize = dla::PARAMETERS;
 
 /// The system of some texts as a function of a few of its parameters.
 ///

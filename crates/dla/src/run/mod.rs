@@ -2,6 +2,8 @@
 
 mod again;
 mod checkpoint;
+#[cfg(feature = "shapes")]
+mod compiled;
 mod counted;
 mod divide;
 mod drive;
@@ -21,6 +23,8 @@ mod work;
 
 pub use again::again;
 pub use checkpoint::{Checkpoint, CheckpointError};
+#[cfg(feature = "shapes")]
+pub use compiled::{CompiledShape, PARAMETERS, Shapes};
 pub use divide::{Substeps, Undivided};
 pub use drive::{Observer, Part, RunError, Schedule, Shorter, View, drive, drive_part, make_steps};
 pub use events::{Close, Crossing, Direction, Event, Watch, Zero, Zeros, close_crossings, zeros};
