@@ -1,6 +1,5 @@
 //! Runs: the loop over steps, its pieces, and what looks on. Sizes are known at run time.
 
-mod again;
 mod checkpoint;
 mod counted;
 mod divide;
@@ -19,7 +18,6 @@ mod substeps;
 mod trajectory;
 mod work;
 
-pub use again::again;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use divide::{Substeps, Undivided};
 pub use drive::{Observer, Part, RunError, Schedule, Shorter, View, drive, drive_part, make_steps};
@@ -30,9 +28,9 @@ pub use parametrised::{AnyTangent, Member, ParametrisedMechanics, ParametrisedMe
 pub use pieces::{Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, pieces, smooth_pieces};
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial};
 pub use samples::Samples;
-pub use state::{AnyState, Stateful};
+pub use state::{AnyState, Stateful, row};
 pub use stop::{Stop, stops};
 pub use subject::{OwnMethods, Stepper, Subject};
-pub use substeps::{SubstepSummary, substepped_part};
+pub use substeps::{SubstepSummary, again, substepped_part};
 pub use trajectory::{Node, Nodes, Trajectory};
 pub use work::Work;
