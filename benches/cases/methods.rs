@@ -1,6 +1,6 @@
 use super::Case;
 use super::systems::{BOWL, built, schedule};
-use harness::{METHODS, Method, integrate_pieces};
+use harness::{METHODS, Method, Run};
 use scene::BuiltScene;
 use std::hint::black_box;
 use std::rc::Rc;
@@ -28,6 +28,6 @@ fn method(name: &str) -> Method {
 fn go(scene: &BuiltScene, method: &Method, steps: u64) {
     let system = scene.system().mechanism();
     let mut state = system.state(black_box(&scene.q), black_box(&scene.v));
-    integrate_pieces(&*system, method, &schedule(steps), &mut state, &mut ()).expect("the steps succeed");
+    Run::of(&*system, method).moves(&schedule(steps), &mut state).expect("the steps succeed");
     black_box(state);
 }

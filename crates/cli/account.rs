@@ -5,7 +5,7 @@ use crate::table::number;
 use crate::trigger::{Events, Happened, Trigger, WatchedTrigger};
 use crate::{json, substeps, train};
 use dla::{Close, Event, Node, Observer, Schedule, fitted};
-use harness::{Method, Progress, Record, Request, SavedCrossing, recommend, run_observed};
+use harness::{Method, Progress, Record, Request, Run, SavedCrossing};
 use scene::{AnyScene, Built, RunSettings};
 use serde_json::{Map, Value, json};
 
@@ -54,7 +54,9 @@ impl<'a> Account<'a> {
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // The step is chosen without substeps: they would make any step look good enough.
             let whole = method.undivided();
-            let found = recommend(&*system.mechanism(), &whole, (q, v), (scene.run().duration, tolerance), search);
+            let mechanism = system.mechanism();
+            let run = Run::of(&*mechanism, &whole).progress(search);
+            let found = run.recommended((q, v), (scene.run().duration, tolerance));
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
         }
@@ -93,10 +95,10 @@ impl<'a> Account<'a> {
     /// Makes the run, and searches each step for events in `samples` parts.
     pub(crate) fn observed(&self, samples: u32, observer: &mut dyn Observer, progress: &mut dyn Progress) -> Made {
         let events = self.events();
-        let made =
-            run_observed(&*self.system.mechanism(), self.method, &self.request, (&events, samples), observer, progress);
-        let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
-        Made { record: made.record, events: self.happened(&crossings, made.close) }
+        let mechanism = self.system.mechanism();
+        let run = Run::of(&*mechanism, self.method).events(&events, samples).observe(observer).progress(progress);
+        let made = run.go(&self.request);
+        Made { record: made.record, events: self.happened(&made.crossings, made.close) }
     }
 
     /// The object of `run --json`.

@@ -9,7 +9,7 @@ use crate::saves::Saves;
 use crate::table::ComparisonRow;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{AnyState, Schedule};
-use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request};
+use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request, Run};
 use report::{HEADINGS, Report, SceneReport, Series};
 use scene::{AnyScene, Built};
 use sleigh::Exact;
@@ -234,7 +234,7 @@ impl<'a> ComparisonReference<'a> {
         }
         let Ok(method) = Method::named(best, None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_on(&*system.mechanism(), &method, &fine, &mut state, &mut (), progress) {
+        match Run::of(&*system.mechanism(), &method).progress(progress).moves(&fine, &mut state) {
             Ok(made) if made < fine.steps => Self::Interrupted,
             Ok(made) => Self::Computed { t: fine.time(made), end: state.unwrapped() },
             Err(_) => Self::None,

@@ -6,7 +6,7 @@ use crate::steady::{self, Searched, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
 use dla::{Schedule, Trajectory};
 use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, has_map, relative_equilibria};
-use harness::{Method, integrate_pieces};
+use harness::{Method, Run};
 use report::{Chart, Layer, chart_svg};
 use scene::{AnyScene, Built, SceneSystem};
 use sleigh::Sleigh;
@@ -127,7 +127,8 @@ fn orbits(
             let Ok(v) = mechanism.velocity_of(0.0, q, &xi) else { continue };
             let mut nodes = Trajectory::every(1);
             // An orbit that fails is shown as far as it goes.
-            let _ = integrate_pieces(&*mechanism, method, schedule, &mut mechanism.state(q, &v), &mut nodes);
+            let run = Run::of(&*mechanism, method).observe(&mut nodes);
+            let _ = run.moves(schedule, &mut mechanism.state(q, &v));
             let seen = nodes.nodes().iter().map(|node| blade.sleigh_state(&node.q, &node.v));
             orbits.push(seen.map(|state| [state.speed, state.turn_rate]).collect());
         }

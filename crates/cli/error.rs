@@ -62,8 +62,8 @@ pub(crate) enum CliError {
     #[error("steady motions: {0}")]
     Equilibria(#[from] EquilibriumError),
     #[error(
-        "--method: noslip equilibria has no derivatives of the steps of {method}; accepted are the family dla, rk4 \
-            and rk4-reduced"
+        "--method: noslip equilibria has no derivatives of the steps of {method}; accepted are the family dla and \
+            rk4"
     )]
     NotDifferentiated { method: &'static str },
     #[error(

@@ -5,7 +5,7 @@ use crate::files::{check_file, write_whole};
 use crate::{inspect, progress, table, terminal};
 use dla::{Mechanism, RunError, Schedule};
 use harness::analysis::{Rounds, weighted_mean};
-use harness::{Method, integrate_on};
+use harness::{Method, Run};
 use report::{Chart, Layer, chart_svg};
 use scene::{MAX_STEPS, PathShape, PathSpec, RunSettings, Scene, SceneEffect, Started};
 use serde_json::{Value, json};
@@ -141,7 +141,7 @@ impl Loops<'_> {
         let mut rounds = Rounds::new(2, every);
         let mut state = system.state(q, v);
         let mut advance = |steps| bar.inc(steps);
-        let outcome = integrate_on(system, method, &schedule, &mut state, &mut rounds, &mut advance);
+        let outcome = Run::of(system, method).observe(&mut rounds).progress(&mut advance).moves(&schedule, &mut state);
         bar.finish_and_clear();
         outcome.map(|_| rounds.each())
     }

@@ -11,7 +11,7 @@ use crate::run_rows::{Read, identity, position, provenance, tell, with_position}
 use crate::trigger::Events;
 use crate::{inspect, notes, progress, resume, substeps, table, terminal, train};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
-use harness::{Method, MethodKind, Progress, Saving, run_saved_watched};
+use harness::{Method, MethodKind, Progress, Saving};
 use scene::{AnyScene, Built};
 use std::cell::RefCell;
 use std::path::Path;
@@ -105,8 +105,9 @@ impl<'a> Run<'a> {
         let mut sink = |node: &Node| write(system, node, output);
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
         let events = account.events();
-        let watched = (&events[..], *event_samples);
-        let outcome = run_saved_watched(&*system.mechanism(), method, request, watched, &mut saving, nodes, progress);
+        let mechanism = system.mechanism();
+        let run = harness::Run::of(&*mechanism, method).events(&events, *event_samples).progress(progress);
+        let outcome = run.saved(request, &mut saving, nodes);
         let made = outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
         Ok((Made { record: made.record, events: account.happened(&made.crossings, made.close) }, saver.outcome()))
     }

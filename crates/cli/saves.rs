@@ -3,7 +3,7 @@ use crate::error::CliError;
 use crate::files::check_folder;
 use crate::resume;
 use dla::{Checkpoint, Mechanism};
-use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
+use harness::{Method, Progress, Record, Request, Run, Saving};
 use std::path::{Path, PathBuf};
 
 /// The folders in which the runs of a comparison are saved, a checkpoint for each method, and from which they go on.
@@ -45,7 +45,7 @@ impl Saves {
         progress: &mut dyn Progress,
     ) -> Result<Record, CliError> {
         if self.to.is_none() && self.from.is_none() {
-            return Ok(harness::run(system, method, request, progress));
+            return Ok(Run::of(system, method).progress(progress).timed(request));
         }
         let name = format!("{}.save", method.info().name);
         let identity = resume::identity_of_whole(scene, method, &request.schedule);
@@ -56,10 +56,11 @@ impl Saves {
         let mut save = |made: &Checkpoint| saver.save(made);
         let every = to.as_ref().map(|_| self.every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved(system, method, request, &mut saving, None, progress);
-        let mut record = outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
+        let outcome = Run::of(system, method).progress(progress).saved(request, &mut saving, None);
+        let made = outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
+        let mut record = made.record;
         saver.outcome()?;
-        record.wall_seconds = timed(system, method, request, record.steps, progress);
+        record.wall_seconds = Run::of(system, method).progress(progress).seconds(request, record.steps);
         Ok(record)
     }
 }

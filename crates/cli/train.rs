@@ -7,7 +7,7 @@ use harness::{Record, Sample};
 use serde_json::{Value, json};
 use sleigh::SleighState;
 
-/// A picture shows so many trailers.
+/// The most trailers in a picture.
 const SHOWN: usize = 60;
 
 /// Places and headings along a run of the trailers that a picture shows, one trailer after the other.

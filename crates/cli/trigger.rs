@@ -123,7 +123,7 @@ pub(crate) struct Happened<'a> {
 impl<'a> Happened<'a> {
     /// In a system.
     pub(crate) fn of(system: &Built<'_>, watched: &[WatchedTrigger<'a>], crossing: &SavedCrossing) -> Option<Self> {
-        let SavedCrossing { event, t, within, spacing, rising, q, v } = crossing;
+        let SavedCrossing { event, t, within, spacing, rising, q, v, .. } = crossing;
         let WatchedTrigger { trigger, quantity, function } = watched.get(*event)?;
         let [t, within, spacing] = [*t, *within, *spacing];
         let rising = function.rises(quantity.value(system, t, q, v), *rising);

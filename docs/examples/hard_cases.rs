@@ -1,11 +1,9 @@
 //! Pictures of the hard cases: what a correct code shows, mostly beside one that is broken in the way that the case is about.
 //!
 //! `cargo run --example hard_cases FOLDER [NOSLIP]`; the folder receives a picture for each case that has no scene in
-//! `docs/stability`, and the program `NOSLIP` makes the runs (`target/release/noslip` unless another is given). The broken
-//! steppers are those of the tests.
+//! `docs/stability`, and the program `NOSLIP` makes the runs (`target/release/noslip` unless another is given).
 
-#[allow(dead_code, reason = "the tests break more than is drawn")]
-#[path = "../../crates/harness/tests/stability/sleigh.rs"]
+#[path = "hard_cases/broken.rs"]
 mod broken;
 #[path = "hard_cases/curves.rs"]
 mod curves;

@@ -3,7 +3,7 @@
 //! `cargo run --example parking [FILE.svg]`; without a file only the plan is printed.
 
 use dla::{Mechanism, Method, Schedule, Subject, Trajectory};
-use harness::integrate_pieces;
+use harness::Run;
 use report::{SceneReport, Series, path_picture};
 use sleigh::parking::{Gap, Move, ParkingPlan};
 use sleigh::{Guided, Sleigh, SleighState};
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let system = Subject::<3, 3>::from(&servo);
     let mut state = system.state(&start.to_coordinates().0, &[0.0; 3]);
     let mut nodes = Trajectory::every(1);
-    integrate_pieces(&system, &Method::named("dla", None)?, &schedule, &mut state, &mut nodes)?;
+    Run::of(&system, &Method::named("dla", None)?).observe(&mut nodes).moves(&schedule, &mut state)?;
     let [x, y, heading] = state.unwrapped()[..].try_into()?;
     let slip = nodes.nodes().iter().map(|node| node.constraint).fold(0.0, f64::max);
     println!(

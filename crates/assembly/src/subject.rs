@@ -91,7 +91,7 @@ impl Mechanism for AssemblySubject<'_> {
         self.assembly.energy_at(t, q, v)
     }
 
-    /// The energy less that of the same place at rest.
+    /// The energy, less the energy of the same place at rest.
     fn kinetic_energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.assembly.energy_at(t, q, v) - self.assembly.energy_at(t, q, &vec![0.0; v.len()])
     }
@@ -178,7 +178,7 @@ impl Mechanism for AssemblySubject<'_> {
         None
     }
 
-    fn has_derivatives(&self, _method: &Method) -> Result<(), SensitivityError> {
+    fn has_tangents(&self, _method: &Method) -> Result<(), SensitivityError> {
         Err(NO_DERIVATIVES)
     }
 

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub(crate) struct EquilibriaArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
-    /// Method whose steps are linearised: of the family dla, rk4 or rk4-reduced, instead of the scene's
+    /// Method whose steps are linearised: of the family dla or rk4, instead of the scene's
     #[arg(long, value_name = "M")]
     pub(crate) method: Option<String>,
     /// Write a phase portrait of speed and turn rate: .svg
@@ -38,7 +38,7 @@ pub(crate) struct PhaseArguments {
 pub(crate) struct LyapunovArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
-    /// Method that can be differentiated: the families dla, gauss, lobatto3, lobatto4, energy2, energy4, rk4-reduced
+    /// Method that can be differentiated: of the families dla or gauss
     #[arg(long, value_name = "M", default_value = "gauss8")]
     pub(crate) method: String,
     /// Number of exponents, the largest first [default: all]

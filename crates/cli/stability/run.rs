@@ -5,9 +5,9 @@ use super::formulas::Formulas;
 use crate::error::CliError;
 use crate::inspect::method_names;
 use dla::{AnyState, Dependency, Hint, Schedule, StepError};
+use harness::Method;
 use harness::stability::check::{self, Finding};
 use harness::stability::{Recorded, Recorder, Trial, VALUES, Verdict, claims, judge};
-use harness::{Method, integrate_from};
 use scene::{AnyScene, BuiltScene, Setting, with_settings};
 
 impl HardCase {
@@ -197,12 +197,14 @@ impl Recording<'_> {
         let mut recorder = Recorder::new(self.every, &look);
         let end = self.from + self.schedule.steps;
         let schedule = Schedule { steps: end, ..self.schedule };
-        let mut outcome = integrate_from(self.from, &*mechanism, self.method, &schedule, &mut state, &mut recorder);
+        let run = harness::Run::of(&*mechanism, self.method).after(self.from).observe(&mut recorder);
+        let mut outcome = run.moves(&schedule, &mut state);
         if self.back && outcome.is_ok() {
             state = state.reversed();
             // The return continues the same run: a new run would begin by removing a slip from the velocity.
             let back = Schedule { steps: 2 * end, ..schedule };
-            outcome = integrate_from(end, &*mechanism, self.method, &back, &mut state, &mut recorder);
+            let run = harness::Run::of(&*mechanism, self.method).after(end).observe(&mut recorder);
+            outcome = run.moves(&back, &mut state);
         }
         (names, recorder.recorded(outcome.err()))
     }

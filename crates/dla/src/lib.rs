@@ -90,7 +90,7 @@ pub use run::{
     PiecewiseMechanics, Place, RecommendError, Recommendation, Report, RunError, Samples, Schedule, SeeOwnStep,
     Shorter, Size, Stateful, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory, Undivided, View, Watch,
     Work, Zero, Zeros, again, close_crossings, drive, drive_part, fitted, make_steps, onto_constraint, piece_by_piece,
-    pieces, recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
+    pieces, recommend_by_trial, row, smooth_pieces, stops, substepped_part, zeros,
 };
 #[cfg(feature = "shapes")]
 pub use run::{CompiledShape, PARAMETERS, Shapes};

@@ -1,6 +1,6 @@
 use crate::record::Meter;
 use crate::timing::Ticker;
-use crate::{Method, Progress, Record, Request};
+use crate::{Made, Method, Progress, Record, Request, Run};
 use dla::{
     AnyState, Checkpoint, CheckpointError, Close, Crossing, Event, Mechanism, Nodes, Part, Piece, Watch, Work,
     close_crossings, piece_by_piece, substepped_part,
@@ -20,11 +20,13 @@ pub struct Saving<'a> {
     pub save: &'a mut dyn FnMut(&Checkpoint),
 }
 
-/// An event that happened, as a checkpoint keeps it.
+/// An event that happened, as a run and its checkpoints keep it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedCrossing {
     /// The index of the event.
     pub event: usize,
+    /// The node before it.
+    pub k: u64,
     /// The time (s).
     pub t: f64,
     /// The interval of time that is known to hold the change of sign (s).
@@ -40,18 +42,19 @@ pub struct SavedCrossing {
 }
 
 /// The numbers of a crossing beside its state.
-const BESIDE: usize = 5;
+const BESIDE: usize = 6;
 
 impl From<&Crossing> for SavedCrossing {
     fn from(found: &Crossing) -> Self {
-        let Crossing { event, t, within, spacing, rising, ref state, .. } = *found;
-        Self { event, t, within, spacing, rising, q: state.unwrapped(), v: state.v().to_vec() }
+        let Crossing { event, k, t, within, spacing, rising, ref state } = *found;
+        Self { event, k, t, within, spacing, rising, q: state.unwrapped(), v: state.v().to_vec() }
     }
 }
 
 impl SavedCrossing {
     fn numbers(&self) -> Vec<f64> {
-        let beside = [self.event as f64, self.t, self.within, self.spacing, f64::from(u8::from(self.rising))];
+        let rising = f64::from(u8::from(self.rising));
+        let beside = [self.event as f64, self.k as f64, self.t, self.within, self.spacing, rising];
         beside.iter().chain(&self.q).chain(&self.v).copied().collect()
     }
 
@@ -60,27 +63,16 @@ impl SavedCrossing {
         let one = |numbers: &[f64]| {
             let (beside, state) = numbers.split_first_chunk::<BESIDE>()?;
             let (q, v) = state.split_at_checked(n)?;
-            let [event, t, within, spacing, rising] = *beside;
+            let [event, k, t, within, spacing, rising] = *beside;
             let (q, v) = (q.to_vec(), v.to_vec());
-            Some(Self { event: event as usize, t, within, spacing, rising: rising != 0.0, q, v })
+            Some(Self { event: event as usize, k: k as u64, t, within, spacing, rising: rising != 0.0, q, v })
         };
         numbers.chunks_exact(BESIDE + 2 * n).filter_map(one).collect()
     }
 }
 
-/// A saved run, with the events that happened.
-#[derive(Debug, Clone)]
-pub struct SavedRun {
-    /// The record; if an event ended the run, its end is the event.
-    pub record: Record,
-    /// The events, in the order of time, also the ones before the checkpoint.
-    pub crossings: Vec<SavedCrossing>,
-    /// Crossings so close that others may have been missed.
-    pub close: Option<Close>,
-}
-
 /// Everything that changes along a run.
-struct Progressing {
+pub(crate) struct Progressing {
     made: u64,
     /// The time (s).
     t: f64,
@@ -93,147 +85,138 @@ struct Progressing {
     unseen: u64,
 }
 
-/// Makes a run once, measures it, and shows its nodes to `nodes` if there are any.
-///
-/// The record is the same to the last bit whether the run was made at once or in parts, except for its time, which is the sum over all
-/// parts, with the observers; so are the nodes, of which a resumed run shows the ones after the checkpoint. A run may be resumed with more
-/// steps than it had. If the progress ends the run, a last checkpoint is made; so is one at its end, from which the same record comes again
-/// at once, and one at its start if an event ends it before any other.
-///
-/// # Errors
-/// [`CheckpointError`] if the checkpoint does not belong to this run; nothing is then done.
-pub fn run_saved(
-    system: &dyn Mechanism,
-    method: &Method,
-    request: &Request,
-    saving: &mut Saving<'_>,
-    nodes: Option<Nodes<'_>>,
-    progress: &mut dyn Progress,
-) -> Result<Record, CheckpointError> {
-    run_saved_watched(system, method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
-}
+/// The part of a run that a checkpoint has, with its work.
+pub(crate) type Loaded = (Progressing, Work);
 
-/// As [`run_saved`], and looks for events, in `samples` parts of each step; the identity must name both. The event that ends a run is found
-/// again from the last checkpoint before it.
-///
-/// # Errors
-/// As [`run_saved`].
-pub fn run_saved_watched(
-    system: &dyn Mechanism,
-    method: &Method,
-    request: &Request,
-    (events, samples): (&[Event<'_>], u32),
-    saving: &mut Saving<'_>,
-    nodes: Option<Nodes<'_>>,
-    progress: &mut dyn Progress,
-) -> Result<SavedRun, CheckpointError> {
-    let Request { schedule, ref q, ref v, .. } = *request;
-    let meter = Meter::new(request, method);
-    let loaded = match saving.from {
-        Some(checkpoint) => {
-            checkpoint.belongs_to(saving.identity)?;
-            let [made] = checkpoint.counts("k")?;
-            within(made, schedule.steps)?;
-            Some(Progressing::load(checkpoint, system, Meter::new(request, method))?)
+impl Saving<'_> {
+    /// The part of the run that is made already; `None` without a step: such a run starts again, and its first node is shown.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] if the checkpoint does not belong to this run.
+    pub(crate) fn loaded(
+        &self,
+        system: &dyn Mechanism,
+        method: &Method,
+        request: &Request,
+    ) -> Result<Option<Loaded>, CheckpointError> {
+        let Some(checkpoint) = self.from else { return Ok(None) };
+        checkpoint.belongs_to(self.identity)?;
+        let [made] = checkpoint.counts("k")?;
+        let steps = request.schedule.steps;
+        if made > steps {
+            let what = "number of steps that are made".to_owned();
+            return Err(CheckpointError::Other { what, found: made.to_string(), expected: format!("at most {steps}") });
         }
-        None => None,
-    };
-    // A run that has made no step starts again: its first node is shown.
-    let mut nodes = nodes;
-    let mut run = match loaded.filter(|(run, _)| run.made > 0) {
-        Some((run, work)) => {
-            nodes = nodes.zip(saving.from).map(|(nodes, from)| nodes.resumed((run.made, run.t), work, from));
-            if saving.every.is_some() {
-                (saving.save)(&run.checkpoint(saving.identity, nodes.as_ref()));
-            }
-            run
-        }
-        None => Progressing {
-            made: 0,
-            t: schedule.t0,
-            state: system.state(q, v),
-            memory: Vec::new(),
-            meter,
-            seconds: 0.0,
-            crossings: Vec::new(),
-            unseen: 0,
-        },
-    };
-    // An event may end a run before it is saved.
-    let mut start = saving.every.filter(|_| run.made == 0).map(|_| run.checkpoint(saving.identity, nodes.as_ref()));
-    progress.advance(run.made);
-    let mut ticker = Ticker::new(progress, run.made);
-    let (begin, before) = (Instant::now(), run.seconds);
-    let (first, mut state) = (run.made, run.state.clone());
-    let mut seen = (first > 0).then(|| (run.t, state.clone()));
-    let mut stopped = false;
-    let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
-    let outcome =
-        piece_by_piece(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
-            if steps.start > first {
-                // A piece begins with a new method.
-                run.memory.clear();
-            }
-            let mut integrator = piece.integrator(method);
-            let mut done = Part { made: steps.start, stopped: false };
-            for chunk in chunks(&steps, saving.every) {
-                // From what a checkpoint has, so that the run is the same with one.
-                integrator.recall(&run.memory, state);
-                let limits = method.substeps();
-                let inner = (&mut run.meter, (&mut nodes, &mut ticker));
-                let mut watch = Watch::new(method, events, inner);
-                watch.samples = samples;
-                let mut watch = match seen.take() {
-                    Some((t, state)) => watch.resumed(t, state),
-                    None => watch,
-                };
-                let outcome =
-                    substepped_part(piece, &mut *integrator, limits, &times, chunk.clone(), state, &mut watch);
-                run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
-                run.unseen += watch.unseen();
-                let ended = watch.ended().is_some();
-                done = outcome?;
-                if ended {
-                    start.iter().for_each(|made| (saving.save)(made));
-                    break;
-                }
-                seen = Some((times.time(done.made), state.clone()));
-                run.memory = integrator.memory();
-                // A run that is over has no news, and its checkpoint stays as it is.
-                let news = done.made > first || first == 0;
-                let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
-                if news && (due && done.made < schedule.steps || ends(&done)) {
-                    if done.made == steps.end && done.made < schedule.steps {
-                        run.memory.clear();
-                    }
-                    (run.made, run.t, run.state) = (done.made, times.time(done.made), state.clone());
-                    run.seconds = before + begin.elapsed().as_secs_f64();
-                    start = None;
-                    (saving.save)(&run.checkpoint(saving.identity, nodes.as_ref()));
-                }
-                if done.stopped {
-                    stopped = true;
-                    break;
-                }
-            }
-            Ok(done)
-        });
-    let seconds = before + begin.elapsed().as_secs_f64();
-    let interrupted = ticker.stopped || stopped;
-    let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
-    let looked = run.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
-    let close = close_crossings(looked, |event| events.get(event).is_some_and(Event::leaves_some_out));
-    let close = Close::with_unseen(close, run.unseen);
-    Ok(SavedRun { record, crossings: run.crossings, close })
-}
-
-/// Refuses a checkpoint beyond the end of a run.
-fn within(made: u64, steps: u64) -> Result<(), CheckpointError> {
-    if made <= steps {
-        return Ok(());
+        let loaded = Progressing::load(checkpoint, system, Meter::new(request, method))?;
+        Ok(Some(loaded).filter(|(run, _)| run.made > 0))
     }
-    let what = "number of steps that are made".to_owned();
-    Err(CheckpointError::Other { what, found: made.to_string(), expected: format!("at most {steps}") })
+}
+
+impl Run<'_> {
+    /// Makes a run once and measures it, with checkpoints if there is a [`Saving`].
+    pub(crate) fn measured(
+        self,
+        request: &Request,
+        saving: Option<(&mut Saving<'_>, Option<Loaded>, Option<Nodes<'_>>)>,
+        progress: &mut dyn Progress,
+    ) -> Made {
+        let Self { system, method, events, event_samples, mut observer, .. } = self;
+        let Request { schedule, ref q, ref v, .. } = *request;
+        let (mut saving, loaded, mut nodes) = match saving {
+            Some((saving, loaded, nodes)) => (Some(saving), loaded, nodes),
+            None => (None, None, None),
+        };
+        let every = saving.as_ref().and_then(|saving| saving.every);
+        let from = saving.as_ref().and_then(|saving| saving.from);
+        let empty = Checkpoint::default();
+        let identity = saving.as_ref().map_or(&empty, |saving| saving.identity);
+        let mut save = |made: &Checkpoint| saving.iter_mut().for_each(|saving| (saving.save)(made));
+        let mut run = match loaded {
+            Some((run, work)) => {
+                nodes = nodes.zip(from).map(|(nodes, from)| nodes.resumed((run.made, run.t), work, from));
+                if every.is_some() {
+                    save(&run.checkpoint(identity, nodes.as_ref()));
+                }
+                run
+            }
+            None => Progressing {
+                made: 0,
+                t: schedule.t0,
+                state: system.state(q, v),
+                memory: Vec::new(),
+                meter: Meter::new(request, method),
+                seconds: 0.0,
+                crossings: Vec::new(),
+                unseen: 0,
+            },
+        };
+        // An event may end a run before it is saved.
+        let mut start = every.filter(|_| run.made == 0).map(|_| run.checkpoint(identity, nodes.as_ref()));
+        progress.advance(run.made);
+        let mut ticker = Ticker::new(progress, run.made);
+        let (begin, before) = (Instant::now(), run.seconds);
+        let (first, mut state) = (run.made, run.state.clone());
+        let mut seen = (first > 0).then(|| (run.t, state.clone()));
+        let mut stopped = false;
+        let ends = |done: &Part| every.is_some() && (done.stopped || done.made == schedule.steps);
+        let outcome =
+            piece_by_piece(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
+                if steps.start > first {
+                    // A piece begins with a new method.
+                    run.memory.clear();
+                }
+                let mut integrator = piece.integrator(method);
+                let mut done = Part { made: steps.start, stopped: false };
+                for chunk in chunks(&steps, every) {
+                    // From what a checkpoint has, so that the run is the same with one.
+                    integrator.recall(&run.memory, state);
+                    let limits = method.substeps();
+                    let inner = (&mut run.meter, ((&mut nodes, &mut observer), &mut ticker));
+                    let mut watch = Watch::new(method, events, inner);
+                    watch.samples = event_samples;
+                    let mut watch = match seen.take() {
+                        Some((t, state)) => watch.resumed(t, state),
+                        None => watch,
+                    };
+                    let outcome =
+                        substepped_part(piece, &mut *integrator, limits, &times, chunk.clone(), state, &mut watch);
+                    run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
+                    run.unseen += watch.unseen();
+                    let ended = watch.ended().is_some();
+                    done = outcome?;
+                    if ended {
+                        start.iter().for_each(|made| save(made));
+                        break;
+                    }
+                    seen = Some((times.time(done.made), state.clone()));
+                    run.memory = integrator.memory();
+                    // A run that is over has no news, and its checkpoint stays as it is.
+                    let news = done.made > first || first == 0;
+                    let due = every.is_some_and(|every| done.made.is_multiple_of(every));
+                    if news && (due && done.made < schedule.steps || ends(&done)) {
+                        if done.made == steps.end && done.made < schedule.steps {
+                            run.memory.clear();
+                        }
+                        (run.made, run.t, run.state) = (done.made, times.time(done.made), state.clone());
+                        run.seconds = before + begin.elapsed().as_secs_f64();
+                        start = None;
+                        save(&run.checkpoint(identity, nodes.as_ref()));
+                    }
+                    if done.stopped {
+                        stopped = true;
+                        break;
+                    }
+                }
+                Ok(done)
+            });
+        let seconds = before + begin.elapsed().as_secs_f64();
+        let interrupted = ticker.stopped || stopped;
+        let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
+        let looked = run.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
+        let close = close_crossings(looked, |event| events.get(event).is_some_and(Event::leaves_some_out));
+        let close = Close::with_unseen(close, run.unseen);
+        Made { record, crossings: run.crossings, close }
+    }
 }
 
 /// The parts of some steps that end at the multiples of `every`; at least one, even if it is empty.

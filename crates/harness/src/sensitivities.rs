@@ -1,6 +1,6 @@
 //! How a run depends on its start and on parameters of its system: tangent vectors that are carried along by the derivatives of the steps.
 
-use crate::run::integrate_pieces;
+use crate::Run;
 use crate::timing::Ticker;
 use crate::{METHODS, Method, Progress, Request};
 use dla::{
@@ -95,7 +95,7 @@ pub fn sensitivities(
     };
     let mut state = system.state(q, v);
     let mut ticker = Ticker::new(progress, 0);
-    let outcome = integrate_pieces(system, method, schedule, &mut state, &mut (&mut carry, &mut ticker));
+    let outcome = Run::of(system, method).observe(&mut (&mut carry, &mut ticker)).moves(schedule, &mut state);
     if let Some(failure) = carry.failure {
         return Err(failure);
     }

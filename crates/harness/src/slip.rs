@@ -50,13 +50,7 @@ impl Slip {
         if self.step.is_nan() {
             return;
         }
-        match &mut self.before {
-            Some((t, state)) => {
-                *t = node.t;
-                state.clone_from(node.state);
-            }
-            before => *before = Some((node.t, node.state.clone())),
-        }
+        node.keep_in(&mut self.before);
     }
 
     pub(crate) fn step(&mut self, node: &View<'_>) {

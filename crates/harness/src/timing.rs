@@ -27,6 +27,21 @@ impl Progress for () {
     fn advance(&mut self, _steps: u64) {}
 }
 
+/// If there is one.
+impl Progress for Option<&mut dyn Progress> {
+    fn advance(&mut self, steps: u64) {
+        self.iter_mut().for_each(|progress| progress.advance(steps));
+    }
+
+    fn expect(&mut self, steps: u64) {
+        self.iter_mut().for_each(|progress| progress.expect(steps));
+    }
+
+    fn stops(&self) -> bool {
+        self.as_ref().is_some_and(|progress| progress.stops())
+    }
+}
+
 impl<F: FnMut(u64)> Progress for F {
     fn advance(&mut self, steps: u64) {
         self(steps);
@@ -92,21 +107,21 @@ impl Observer for Ticker<'_> {
 }
 
 /// The observer that only asks whether to go on.
-pub(crate) struct Stopper<'a>(pub(crate) &'a dyn Progress);
+pub(crate) struct Stopper<'a>(pub(crate) Option<&'a dyn Progress>);
 
 impl Observer for Stopper<'_> {
     fn start(&mut self, _node: &View<'_>) {}
 
     #[inline]
     fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
-        if node.k.is_multiple_of(Ticker::EVERY) && self.0.stops() {
+        if node.k.is_multiple_of(Ticker::EVERY) && self.0.is_some_and(Progress::stops) {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     }
 
     fn part(&mut self, _end: &View<'_>, _report: &Report) -> ControlFlow<()> {
-        if self.0.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.0.is_some_and(Progress::stops) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

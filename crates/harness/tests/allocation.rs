@@ -6,15 +6,9 @@ use dla::{AnyState, Mechanism, Schedule, Subject, make_steps};
 use harness::{METHODS, Method, MethodKind};
 use sleigh::Taylor;
 
-#[test]
-fn no_method_allocates_in_a_step() {
-    check_steps(40);
-}
-
-#[test]
-#[ignore = "slow"]
-fn no_method_allocates_in_a_step_in_full() {
-    check_steps(1000);
+test_systems::short_and_full! {
+    no_method_allocates_in_a_step => check_steps(40);
+    no_method_allocates_in_a_step_in_full => check_steps(1000);
 }
 
 fn check_steps(steps: u64) {

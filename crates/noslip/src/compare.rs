@@ -3,7 +3,7 @@ use harness::precision::{
     Bench, Cheapest, Curve, LEVELS, LadderLimits, Reference, ReferenceError, ReferenceMotion, cheapest, mark_pareto,
     seconds_to, work_precision,
 };
-use harness::{Method, MethodError, Record, Request, run};
+use harness::{Method, MethodError, Record, Request, Run};
 use lagrangian::linear::larger;
 use std::fmt;
 use thiserror::Error;
@@ -49,7 +49,7 @@ pub fn compare<'a, const N: usize, const M: usize>(
     const SAMPLES: u64 = 200;
     let subject = system.into();
     let request = Request { schedule: *schedule, q: q.to_vec(), v: v.to_vec(), samples: SAMPLES };
-    let one = |name: &&str| Method::named(name, None).map(|method| run(&subject, &method, &request, &mut ()));
+    let one = |name: &&str| Method::named(name, None).map(|method| Run::of(&subject, &method).timed(&request));
     let runs = methods.iter().map(one).collect::<Result<_, _>>()?;
     Ok(Comparison { runs })
 }

@@ -138,15 +138,9 @@ fn sleigh(steps: u64) {
     close(&blade, &sleigh, &methods, start, (0.01, steps));
 }
 
-#[test]
-fn the_sleigh() {
-    sleigh(10);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_sleigh_at_length() {
-    sleigh(10_000);
+test_systems::short_and_full! {
+    the_sleigh => sleigh(10);
+    the_sleigh_at_length => sleigh(10_000);
 }
 
 fn ball(steps: u64) {
@@ -155,13 +149,7 @@ fn ball(steps: u64) {
     close(&ball, &model, &["dla", "gauss4", "gauss16", "rk4-reduced"], model.start(), (0.002, steps));
 }
 
-#[test]
-fn chaplygins_ball() {
-    ball(10);
-}
-
-#[test]
-#[ignore = "slow"]
-fn chaplygins_ball_at_length() {
-    ball(10_000);
+test_systems::short_and_full! {
+    chaplygins_ball => ball(10);
+    chaplygins_ball_at_length => ball(10_000);
 }

@@ -85,15 +85,9 @@ fn sleigh(run: (f64, u64)) {
     assert_ne!(at(&start.0), at(&quarter));
 }
 
-#[test]
-fn the_sleigh_turns_around() {
-    sleigh((2.0, 20));
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_sleigh_turns_around_in_full() {
-    sleigh((10.0, 200));
+test_systems::short_and_full! {
+    the_sleigh_turns_around => sleigh((2.0, 20));
+    the_sleigh_turns_around_in_full => sleigh((10.0, 200));
 }
 
 /// The control: where the method keeps the basis of the beginning, a blade that turns by more than a quarter is lost.
@@ -118,15 +112,9 @@ fn roller_racer(run: (f64, u64)) {
     check("roller racer", racer, (q, v), run, false);
 }
 
-#[test]
-fn the_roller_racer_turns() {
-    roller_racer((0.4, 10));
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_roller_racer_turns_in_full() {
-    roller_racer((8.0, 200));
+test_systems::short_and_full! {
+    the_roller_racer_turns => roller_racer((0.4, 10));
+    the_roller_racer_turns_in_full => roller_racer((8.0, 200));
 }
 
 fn rolling_disk(run: (f64, u64)) {
@@ -135,15 +123,9 @@ fn rolling_disk(run: (f64, u64)) {
     check("rolling disk", disk, (q, v), run, false);
 }
 
-#[test]
-fn the_rolling_disk_turns() {
-    rolling_disk((2.0, 50));
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_rolling_disk_turns_in_full() {
-    rolling_disk((8.0, 200));
+test_systems::short_and_full! {
+    the_rolling_disk_turns => rolling_disk((2.0, 50));
+    the_rolling_disk_turns_in_full => rolling_disk((8.0, 200));
 }
 
 /// The text in Rust that gives no basis moves as the text that gives one.
@@ -160,15 +142,9 @@ fn snakeboard((duration, steps): (f64, u64)) {
     assert!(refused.to_string().contains("`WithBasis`"), "{refused}");
 }
 
-#[test]
-fn a_text_without_a_basis() {
-    snakeboard((0.3, 10));
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_text_without_a_basis_at_length() {
-    snakeboard((6.0, 1200));
+test_systems::short_and_full! {
+    a_text_without_a_basis => snakeboard((0.3, 10));
+    a_text_without_a_basis_at_length => snakeboard((6.0, 1200));
 }
 
 /// Rows that say the same are an error, and so are constraints that are not affine.

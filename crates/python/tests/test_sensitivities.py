@@ -10,7 +10,7 @@ from scipy.optimize import least_squares, minimize
 
 import noslip
 
-METHODS = ["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss4", "gauss16", "energy2", "rk4", "rk4-reduced"]
+METHODS = ["dla", "dla-trapezoid", "dla4", "gauss4", "gauss16", "rk4"]
 
 
 def extrapolated(scene: noslip.Scene, key: str, value: float, columns: list[str], **settings: Any) -> Any:

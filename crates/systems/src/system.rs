@@ -1,7 +1,7 @@
 use crate::power::{self, SceneBody, SceneEffects};
 use crate::{AnyEffect, Column, EffectList, EffectPower, SleighFamily, columns};
 use assembly::parts::Train;
-use dla::{CompiledShape, Mechanism, Node, OwnMethods, ParametrisedMechanism, Shapes, Stepper};
+use dla::{CompiledShape, Mechanism, Node, OwnMethods, ParametrisedMechanism, Shapes, Stepper, row};
 use lagrangian::{Piecewise, System, With};
 use sleigh::closed::ClosedForm;
 use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
@@ -114,11 +114,6 @@ where
         let With { body, effects } = self.0.piece(t);
         body.series(effects.in_own_axes(&body)?, tolerance)
     }
-}
-
-/// A list of numbers as a row.
-fn row<const N: usize>(x: &[f64]) -> [f64; N] {
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(f64::NAN))
 }
 
 /// A system with its start.

@@ -223,7 +223,7 @@ fn what_a_text_does_not_have_is_refused_with_what_it_has() {
     folder.refused("section rolling-disk --plane heading=0", &["--plane", "`heading`", "phi, theta"]);
     folder.refused("section rolling-disk --plane x=0 --axes x,speed", &["--axes", "`speed`", "theta'"]);
     folder.refused("lyapunov knife-edge --map speed=0:1:2 --map x=0:1:2", &["--map", "`speed`", "theta'"]);
-    folder.refused("lyapunov knife-edge --method rk4", &["rk4-reduced"]);
+    folder.refused("lyapunov knife-edge --method rk4", &["gauss4"]);
     folder.refused("lyapunov knife-edge --exponents 6", &["from 1 to 5"]);
 }
 

@@ -11,8 +11,12 @@ mod model;
 mod sleigh_on_arm;
 mod special;
 mod suslov;
+mod tests;
 mod texts;
 mod turntable_ball;
+
+#[doc(hidden)]
+pub use lagrangian;
 
 pub use attitude::Attitude;
 pub use chaplygin_ball::ChaplyginBall;

@@ -6,7 +6,6 @@ mod implicit_midpoint;
 mod reduced_point;
 mod rk4;
 mod rk4_reduced;
-mod sensitivity;
 
 pub use dop853::Dop853;
 pub use implicit_midpoint::ImplicitMidpoint;
@@ -28,4 +27,4 @@ fn weighted<const N: usize>(h: f64, k: &[[f64; N]; 4]) -> [f64; N] {
 }
 
 /// Where the four stages are evaluated, as fractions of the step; each uses the slope of the one before it.
-const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+pub(crate) const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];

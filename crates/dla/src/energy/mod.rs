@@ -4,7 +4,6 @@ mod ends;
 mod gradient;
 mod path;
 mod rule;
-mod sensitivity;
 mod start;
 
 use crate::convergence::FixedPoint;

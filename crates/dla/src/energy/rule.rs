@@ -48,11 +48,6 @@ impl Weights {
         Self { hi: Lanes(mapped(&weights, |w| w.hi)), lo: Lanes(mapped(&weights, |w| w.lo)) }
     }
 
-    /// The coefficient of a lane, rounded.
-    pub(super) fn rounded(&self, lane: usize) -> f64 {
-        self.hi.0[lane]
-    }
-
     /// Adds the products with `x` to a sum and to what it leaves out.
     #[inline(always)]
     pub(super) fn add<X: Copy>(&self, x: X, sum: &mut Lanes, rest: &mut Lanes)

@@ -1,6 +1,5 @@
 mod dense;
 mod point;
-mod sensitivity;
 mod stages;
 mod tables;
 

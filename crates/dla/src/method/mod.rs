@@ -1,15 +1,11 @@
 //! The methods by name.
 
-mod differentiable;
-mod kind;
 mod stepper;
 mod table;
 
-pub(crate) use differentiable::differentiable;
-pub use differentiable::{has_derivatives, has_tangents};
-
-pub use kind::MethodKind;
-pub use table::{METHODS, MethodInfo};
+pub(crate) use stepper::differentiable;
+pub use stepper::{has_derivatives, has_tangents};
+pub use table::{METHODS, MethodInfo, MethodKind};
 
 use crate::Substeps;
 use lagrangian::{Alpha, Midpoint, NotAWeight, Rule, Trapezoid};
@@ -106,7 +102,7 @@ impl Method {
     }
 
     /// The same method for the tolerance of a run, if there is one. An adaptive method aims for it in each of its steps. Any other method
-    /// is unchanged; `harness::recommend` finds its step.
+    /// is unchanged; `harness::Run::recommended` finds its step.
     ///
     /// # Errors
     /// As [`with_tolerance`](Self::with_tolerance).

@@ -1,8 +1,9 @@
 //! The methods by name, as objects.
 
+use super::table::NOT_HERE;
 use crate::{
-    Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
-    StepError, StepReport, Stepper,
+    Composition, Differentiable, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods,
+    Rebased, SensitivityError, State, StepError, StepReport, Stepper,
 };
 use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
 
@@ -54,8 +55,42 @@ impl Method {
     }
 }
 
+/// Whether the steps of a method have derivatives.
+///
+/// # Errors
+/// [`SensitivityError::Unsupported`] with the reason, if they have none.
+pub fn has_derivatives(method: &Method) -> Result<(), SensitivityError> {
+    differentiable::<3, 1>(method).map(drop)
+}
+
+/// Whether they have derivatives on the distribution, for exponents.
+///
+/// # Errors
+/// [`SensitivityError::Unsupported`] with the reason, if they have none.
+pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
+    method.info().tangent.map_err(|reason| SensitivityError::Unsupported { reason })
+}
+
+/// A method as an object whose steps can be differentiated.
+///
+/// # Errors
+/// [`SensitivityError::Unsupported`] with the reason, if the method is not differentiated.
+#[inline(never)]
+pub(crate) fn differentiable<const N: usize, const M: usize>(
+    method: &Method,
+) -> Result<Box<dyn Differentiable<N, M>>, SensitivityError> {
+    Ok(match method.info().kind {
+        MethodKind::Dla => Box::new(Dla::midpoint()),
+        MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
+        MethodKind::Composed(order) => Box::new(composed(order, Dla::midpoint())),
+        MethodKind::Gauss(stages) => Box::new(gauss(stages)),
+        MethodKind::Rk4 => Box::new(Rk4),
+        _ => return Err(SensitivityError::Unsupported { reason: method.info().tangent.err().unwrap_or(NOT_HERE) }),
+    })
+}
+
 /// The composition of an order in the table of methods.
-pub(super) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
+fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
     match order {
         4 => Composition::suzuki4(step),
         6 => Composition::kahan_li6(step),
@@ -64,7 +99,7 @@ pub(super) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
 }
 
 /// The collocation with a number of stages in the table of methods.
-pub(super) fn gauss(stages: usize) -> Gauss {
+fn gauss(stages: usize) -> Gauss {
     match stages {
         2 => Gauss::new::<2>(),
         3 => Gauss::new::<3>(),
@@ -77,7 +112,7 @@ pub(super) fn gauss(stages: usize) -> Gauss {
 }
 
 /// The energy-preserving method with a number of stages in the table of methods.
-pub(super) fn energy(stages: usize) -> Energy {
+fn energy(stages: usize) -> Energy {
     match stages {
         1 => Energy::new::<1>(),
         2 => Energy::new::<2>(),

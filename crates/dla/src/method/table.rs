@@ -1,4 +1,45 @@
-use super::MethodKind;
+/// The families of methods, as a program tells them apart, with the number that tells the members of a family apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MethodKind {
+    /// `dla`
+    Dla,
+    /// `dla-trapezoid`
+    DlaTrapezoid,
+    /// `dla-alpha`
+    DlaAlpha,
+    /// `dla4`, `dla6`, `dla8`: the composition of `dla` of that order
+    Composed(u32),
+    /// `lobatto3` to `lobatto5`, by their stages
+    Lobatto(usize),
+    /// `gauss4` to `gauss16`, by their stages, from two to eight
+    Gauss(usize),
+    /// `gauss-adaptive`
+    GaussAdaptive,
+    /// `taylor`
+    Taylor,
+    /// `energy2` to `energy8`, by their stages, from one to four
+    Energy(usize),
+    /// `gni`
+    Gni,
+    /// `rk4`
+    Rk4,
+    /// `rk4-projected`
+    Rk4Projected,
+    /// `rk4-reduced`
+    Rk4Reduced,
+    /// `implicit-midpoint`
+    ImplicitMidpoint,
+    /// `dop853`
+    Dop853,
+}
+
+impl MethodKind {
+    /// Whether the method chooses steps of its own within a step of the run, by a tolerance.
+    #[must_use]
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Self::GaussAdaptive | Self::Taylor | Self::Dop853)
+    }
+}
 
 /// The properties of a method: one row of [`METHODS`], from which every list of methods is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,10 +147,9 @@ const CORTES: &str = "Cortes and Martinez 2001, Nonlinearity 14, 1365-1392";
 
 const OWN_STEPS: &str = "the method chooses its steps from the state, so the number of steps jumps where the state \
     changes";
-const OFF_THE_DISTRIBUTION: &str = "the method works in full coordinates and leaves the distribution, on which exponents are defined: take \
-        rk4-reduced";
-const NOT_HERE: &str =
-    "the derivatives of this method are in the library (dla::Sensitivity) and not in this program: take gauss8";
+const OFF_THE_DISTRIBUTION: &str =
+    "the method works in full coordinates and leaves the distribution, on which exponents are defined: take gauss4";
+pub(super) const NOT_HERE: &str = "the steps of this method are not differentiated: take gauss8";
 const NO_MAP: &str = "gni carries a multiplier from step to step, so its step is not a map of (q, v)";
 
 /// Every method, in the order in which tables show them.
@@ -160,8 +200,8 @@ pub const METHODS: &[MethodInfo] = &[
         "Hairer, Lubich and Wanner 2006, (V.3.12)",
     )
     .for_assemblies(),
-    lobatto!("lobatto3", 3, 4),
-    lobatto!("lobatto4", 4, 6),
+    lobatto!("lobatto3", 3, 4).without_tangent(NOT_HERE),
+    lobatto!("lobatto4", 4, 6).without_tangent(NOT_HERE),
     lobatto!("lobatto5", 5, 8).without_tangent(NOT_HERE),
     gauss!("gauss4", 2, 4),
     gauss!("gauss6", 3, 6),
@@ -192,8 +232,9 @@ pub const METHODS: &[MethodInfo] = &[
         ENERGY,
         "discrete gradient method on the dual of the distribution, averaged gradient, self-adjoint",
         "Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019, J. Nonlinear Sci. 29, 1523-1562",
-    ),
-    energy!("energy4", 2, 4),
+    )
+    .without_tangent(NOT_HERE),
+    energy!("energy4", 2, 4).without_tangent(NOT_HERE),
     energy!("energy6", 3, 6).without_tangent(NOT_HERE),
     energy!("energy8", 4, 8).without_tangent(NOT_HERE),
     row(
@@ -226,7 +267,8 @@ pub const METHODS: &[MethodInfo] = &[
         CONSTRAINT,
         "baseline: classical Runge-Kutta on the reduced equations, in a basis of admissible velocities",
         "Bloch 2015, Nonholonomic Mechanics and Control, section 5.2",
-    ),
+    )
+    .without_tangent(NOT_HERE),
     row(
         MethodKind::ImplicitMidpoint,
         ("implicit-midpoint", 2),

@@ -63,6 +63,17 @@ impl View<'_> {
     pub fn position(&self) -> Option<f64> {
         self.system.largest_position(self.t, self.state)
     }
+
+    /// Keeps the time and the state as the node before the next one; without an allocation if there is one of the same system.
+    pub fn keep_in(&self, before: &mut Option<(f64, AnyState)>) {
+        match before {
+            Some((t, state)) => {
+                *t = self.t;
+                state.clone_from(self.state);
+            }
+            None => *before = Some((self.t, self.state.clone())),
+        }
+    }
 }
 
 /// Something that looks at the nodes of a run and changes nothing.
@@ -313,10 +324,37 @@ pub fn make_steps(
     state: &mut AnyState,
     observer: &mut dyn Observer,
 ) -> Result<Part, RunError> {
-    let mut made = steps.start;
     if observer.measures_work() {
         method.measure_work(system.power_sources());
     }
+    steps_by(system, schedule, steps, state, observer, |k, state, observer| {
+        let time = schedule.time(k);
+        match method.step(time, schedule.step, state) {
+            Ok(report) => {
+                let node = View { system, k: k + 1, t: schedule.time(k + 1), state };
+                Ok(Some(observer.step(&node, report)))
+            }
+            Err(StepError::Stopped) => Ok(None),
+            Err(source) => {
+                let source = system.explained((time, schedule.step), state, source);
+                Err(RunError::new(k + 1, time, source))
+            }
+        }
+    })
+}
+
+/// The loop over the steps of a part of a run: `step` makes the step from the node of the given number, and shows its end to the observer.
+/// It gives `None`, with everything as it was, if the step is given up.
+#[inline]
+pub(super) fn steps_by(
+    system: &dyn Mechanism,
+    schedule: &Schedule,
+    steps: Range<u64>,
+    state: &mut AnyState,
+    observer: &mut dyn Observer,
+    mut step: impl FnMut(u64, &mut AnyState, &mut dyn Observer) -> Result<Option<ControlFlow<()>>, RunError>,
+) -> Result<Part, RunError> {
+    let mut made = steps.start;
     let first = View { system, k: made, t: schedule.time(made), state };
     if made == 0 {
         observer.start(&first);
@@ -325,28 +363,19 @@ pub fn make_steps(
     }
     let (mut outcome, mut stopped) = (Ok(()), false);
     let stop = Stop::of_thread_if_any();
-    while made < steps.end {
+    while made < steps.end && !stopped {
         if stop.as_ref().is_some_and(Stop::asked) {
             stopped = true;
             break;
         }
-        match method.step(schedule.time(made), schedule.step, state) {
-            Ok(report) => {
+        match step(made, state, observer) {
+            Ok(Some(flow)) => {
                 made += 1;
-                let node = View { system, k: made, t: schedule.time(made), state };
-                if observer.step(&node, report).is_break() {
-                    stopped = true;
-                    break;
-                }
+                stopped = flow.is_break();
             }
-            Err(StepError::Stopped) => {
-                stopped = true;
-                break;
-            }
-            Err(source) => {
-                let time = schedule.time(made);
-                let source = system.explained((time, schedule.step), state, source);
-                outcome = Err(RunError::new(made + 1, time, source));
+            Ok(None) => stopped = true,
+            Err(error) => {
+                outcome = Err(error);
                 break;
             }
         }

@@ -126,7 +126,7 @@ pub trait Mechanism {
     ///
     /// # Errors
     /// [`SensitivityError::Unsupported`] with the reason, if they have none.
-    fn has_derivatives(&self, method: &Method) -> Result<(), SensitivityError>;
+    fn has_tangents(&self, method: &Method) -> Result<(), SensitivityError>;
 
     /// The derivative of a step of a method, in the `2 n - m` coordinates `(q, xi)`.
     ///

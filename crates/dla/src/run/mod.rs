@@ -1,6 +1,5 @@
 //! Runs: the loop over steps, its pieces, and what looks on. Sizes are known at run time.
 
-mod again;
 mod checkpoint;
 #[cfg(feature = "shapes")]
 mod compiled;
@@ -21,7 +20,6 @@ mod substeps;
 mod trajectory;
 mod work;
 
-pub use again::again;
 pub use checkpoint::{Checkpoint, CheckpointError};
 #[cfg(feature = "shapes")]
 pub use compiled::{CompiledShape, PARAMETERS, Shapes};
@@ -34,9 +32,9 @@ pub use parametrised::{AnyTangent, Member, ParametrisedMechanics, ParametrisedMe
 pub use pieces::{Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, pieces, smooth_pieces};
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial};
 pub use samples::Samples;
-pub use state::{AnyState, Stateful};
+pub use state::{AnyState, Stateful, row};
 pub use stop::{Stop, stops};
 pub use subject::{OwnMethods, Stepper, Subject};
-pub use substeps::{SubstepSummary, substepped_part};
+pub use substeps::{SubstepSummary, again, substepped_part};
 pub use trajectory::{Node, Nodes, Trajectory};
 pub use work::Work;

@@ -1,5 +1,4 @@
-use super::again::again;
-use crate::{AnyState, Method, Observer, Report, StepError, View};
+use crate::{AnyState, Method, Observer, Report, StepError, View, again};
 use std::ops::ControlFlow;
 
 /// The observer that takes the state at given times, wherever the nodes are.
@@ -65,25 +64,15 @@ impl<'a> Samples<'a> {
             self.taken.push(state);
         }
     }
-
-    fn remember(&mut self, node: &View<'_>) {
-        match &mut self.before {
-            Some((t, state)) => {
-                *t = node.t;
-                state.clone_from(node.state);
-            }
-            before => *before = Some((node.t, node.state.clone())),
-        }
-    }
 }
 
 impl Observer for Samples<'_> {
     fn start(&mut self, node: &View<'_>) {
-        self.remember(node);
+        node.keep_in(&mut self.before);
     }
 
     fn resume(&mut self, node: &View<'_>) {
-        self.remember(node);
+        node.keep_in(&mut self.before);
     }
 
     fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
@@ -91,7 +80,7 @@ impl Observer for Samples<'_> {
             self.take(node, (t0, &start));
             self.before = Some((t0, start));
         }
-        self.remember(node);
+        node.keep_in(&mut self.before);
         ControlFlow::Continue(())
     }
 

@@ -27,7 +27,7 @@ pub trait Stateful: Any + Send + Sync {
     fn reversed(&self) -> AnyState;
     /// A copy.
     fn cloned(&self) -> AnyState;
-    /// Copies the other state if it is of the same kind; returns whether it is.
+    /// Copies the other state if it is of the same kind; returns false if it is not.
     fn becomes(&mut self, other: &dyn Any) -> bool;
 }
 
@@ -139,13 +139,13 @@ impl AnyState {
         self.held()
     }
 
-    /// The same, to be changed.
+    /// As [`typed`](Self::typed), to be changed.
     #[inline]
     pub fn typed_mut<const N: usize>(&mut self) -> Option<&mut State<N>> {
         self.held_mut()
     }
 
-    /// The state that it holds; `None` if that is of another kind.
+    /// The state inside; `None` if it is of another kind.
     #[must_use]
     #[inline]
     pub fn held<S: Stateful>(&self) -> Option<&S> {
@@ -153,7 +153,7 @@ impl AnyState {
         state.downcast_ref()
     }
 
-    /// As [`typed`](Self::typed), to be changed.
+    /// As [`held`](Self::held), to be changed.
     #[inline]
     pub fn held_mut<S: Stateful>(&mut self) -> Option<&mut S> {
         let state: &mut dyn Any = &mut *self.0;
@@ -189,7 +189,8 @@ impl fmt::Debug for AnyState {
 }
 
 /// A list of numbers as a row of `N`, with not a number in the places that it lacks.
-pub(crate) fn row<const N: usize>(x: &[f64]) -> [f64; N] {
+#[must_use]
+pub fn row<const N: usize>(x: &[f64]) -> [f64; N] {
     match x.first_chunk() {
         Some(row) => *row,
         None => from_fn(|i| x.get(i).copied().unwrap_or(f64::NAN)),

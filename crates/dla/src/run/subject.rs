@@ -324,7 +324,7 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         system.velocity_seeded(Seeded::constant(t), &seeded_row(q), &seeded_row(xi)).map(|v| v.to_vec())
     }
 
-    fn has_derivatives(&self, method: &Method) -> Result<(), SensitivityError> {
+    fn has_tangents(&self, method: &Method) -> Result<(), SensitivityError> {
         has_tangents(method)?;
         let (shaped, _) = self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
         (shaped.differentiable)(method).map(drop)

@@ -1,6 +1,7 @@
+use super::drive::steps_by;
 use crate::{
-    AnyState, Checkpoint, CheckpointError, Halved, Integrator, Mechanism, Observer, Part, Report, RunError, Schedule,
-    StepError, Substeps, Undivided, View, make_steps,
+    AnyState, Checkpoint, CheckpointError, Halved, Integrator, Mechanism, Method, Observer, Part, Report, RunError,
+    Schedule, StepError, Substeps, Undivided, View, make_steps,
 };
 use std::ops::{ControlFlow, Range};
 
@@ -60,36 +61,19 @@ pub fn substepped_part(
         return make_steps(system, method, schedule, steps, state, observer)
             .map_err(|error| error.with_shorter(method, (schedule.step, state)));
     };
-    let mut made = steps.start;
     if observer.measures_work() {
         method.measure_work(system.power_sources());
     }
-    let first = View { system, k: made, t: schedule.time(made), state };
-    if made == 0 {
-        observer.start(&first);
-    } else {
-        observer.resume(&first);
-    }
-    let (mut outcome, mut stopped) = (Ok(()), false);
-    while made < steps.end && !stopped {
-        match step(system, method, (schedule, made, limits), state, observer) {
+    steps_by(system, schedule, steps, state, observer, |k, state, observer| {
+        match step(system, method, (schedule, k, limits), state, observer) {
             Ok(ControlFlow::Continue(report)) => {
-                made += 1;
-                let node = View { system, k: made, t: schedule.time(made), state };
-                stopped = observer.step(&node, &report).is_break();
+                let node = View { system, k: k + 1, t: schedule.time(k + 1), state };
+                Ok(Some(observer.step(&node, &report)))
             }
-            Ok(ControlFlow::Break(())) => stopped = true,
-            Err(RunError { source: StepError::Stopped, .. }) => stopped = true,
-            Err(error) => {
-                outcome = Err(error);
-                break;
-            }
+            Ok(ControlFlow::Break(())) | Err(RunError { source: StepError::Stopped, .. }) => Ok(None),
+            Err(error) => Err(error),
         }
-    }
-    if stopped || outcome.is_err() || made == schedule.steps {
-        observer.end(&View { system, k: made, t: schedule.time(made), state });
-    }
-    outcome.map(|()| Part { made, stopped })
+    })
 }
 
 /// The step from node `k`, whole or in parts; `Break`, with everything as it was, if the observer gives it up.
@@ -104,7 +88,7 @@ fn step(
     let (t, h) = (schedule.time(k), schedule.step);
     // From what a checkpoint has.
     method.recall(&remembered, state);
-    let mut last = LastReport::default();
+    let mut last = LastReport { report: Report::default(), work: true };
     let mut memory = Vec::new();
     let whole = make_steps(system, method, schedule, k..k + 1, state, &mut last)
         .map_err(|error| error.source)
@@ -122,7 +106,7 @@ fn step(
     let mut total = Report::of(system.size().m);
     let made = limits.divide((t, h), failure, StepError::may_hold_in_parts, |(t, h), after| {
         let start = state.clone();
-        let report = one(system, method, (t, h), state)?;
+        let report = alone(system, method, None, (t, h), state, true)?;
         if let Err(failure) = resolves(system, method, (t, h), &start, state) {
             *state = start;
             return Err(failure);
@@ -159,35 +143,49 @@ fn resolves(
     before: &AnyState,
     after: &AnyState,
 ) -> Result<(), StepError> {
-    Halved::resolves(step, before, after, |step, state| one(system, method, step, state).map(|_| ()))
+    Halved::resolves(step, before, after, |step, state| alone(system, method, None, step, state, true).map(|_| ()))
+}
+
+/// A step of a method by itself, without the memory of other steps, as a run of its own; with its work if that is asked for.
+///
+/// It uses the code of whole runs, and makes the method each time: for the few steps between nodes.
+///
+/// # Errors
+/// [`StepError`] if the step has no solution; the state is then unchanged.
+pub fn again(
+    system: &dyn Mechanism,
+    method: &Method,
+    time: (f64, f64),
+    state: &mut AnyState,
+    work: bool,
+) -> Result<Report, StepError> {
+    alone(system, &mut *system.integrator(method), method.substeps(), time, state, work)
 }
 
 /// One step by itself, without the memory of the method.
-fn one(
+fn alone(
     system: &dyn Mechanism,
     method: &mut dyn Integrator,
+    limits: Option<Substeps>,
     (t, h): (f64, f64),
     state: &mut AnyState,
+    work: bool,
 ) -> Result<Report, StepError> {
     method.recall(&[], state);
-    let mut last = LastReport::default();
-    let alone = Schedule { t0: t, step: h, steps: 1 };
-    let part = make_steps(system, method, &alone, 0..1, state, &mut last).map_err(|error| error.source)?;
-    if part.made == 1 { Ok(last.report) } else { Err(StepError::Stopped) }
+    let mut last = LastReport { report: Report::default(), work };
+    let schedule = Schedule { t0: t, step: h, steps: 1 };
+    let part = match limits {
+        None => make_steps(system, method, &schedule, 0..1, state, &mut last),
+        limits => substepped_part(system, method, limits, &schedule, 0..1, state, &mut last),
+    };
+    if part.map_err(|error| error.source)?.made == 1 { Ok(last.report) } else { Err(StepError::Stopped) }
 }
 
 /// The observer that keeps what the last step reported.
-#[derive(Debug)]
-pub(super) struct LastReport {
-    pub(super) report: Report,
+struct LastReport {
+    report: Report,
     /// Whether the work of the step is asked for.
-    pub(super) work: bool,
-}
-
-impl Default for LastReport {
-    fn default() -> Self {
-        Self { report: Report::default(), work: true }
-    }
+    work: bool,
 }
 
 impl Observer for LastReport {

@@ -151,36 +151,6 @@ impl Trajectory {
     }
 }
 
-impl Observer for Trajectory {
-    fn start(&mut self, node: &View<'_>) {
-        let node = self.choice.start(node);
-        self.nodes.push(node);
-    }
-
-    fn resume(&mut self, node: &View<'_>) {
-        self.choice.work.resume(node);
-    }
-
-    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
-        let node = self.choice.step(node, report);
-        self.nodes.extend(node);
-        ControlFlow::Continue(())
-    }
-
-    fn measures_work(&self) -> bool {
-        true
-    }
-
-    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
-        self.choice.work.part(end, report)
-    }
-
-    fn end(&mut self, node: &View<'_>) {
-        let node = self.choice.end(node);
-        self.nodes.extend(node);
-    }
-}
-
 /// The observer that hands on the nodes a [`Trajectory`] would keep, as they come: the memory holds none of them.
 pub struct Nodes<'a> {
     choice: Choice,
@@ -217,33 +187,51 @@ impl std::fmt::Debug for Nodes<'_> {
     }
 }
 
-impl Observer for Nodes<'_> {
-    fn start(&mut self, node: &View<'_>) {
-        (self.sink)(&self.choice.start(node));
-    }
-
-    fn resume(&mut self, node: &View<'_>) {
-        self.choice.work.resume(node);
-    }
-
-    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
-        if let Some(node) = self.choice.step(node, report) {
-            (self.sink)(&node);
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn measures_work(&self) -> bool {
-        true
-    }
-
-    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
-        self.choice.work.part(end, report)
-    }
-
-    fn end(&mut self, node: &View<'_>) {
-        if let Some(node) = self.choice.end(node) {
-            (self.sink)(&node);
-        }
+impl Trajectory {
+    fn take(&mut self, node: Node) {
+        self.nodes.push(node);
     }
 }
+
+impl Nodes<'_> {
+    fn take(&mut self, node: Node) {
+        (self.sink)(&node);
+    }
+}
+
+/// Observers that take the nodes of a choice.
+macro_rules! takes_nodes {
+    ($($observer:ty),*) => { $(
+        impl Observer for $observer {
+            fn start(&mut self, node: &View<'_>) {
+                let node = self.choice.start(node);
+                self.take(node);
+            }
+
+            fn resume(&mut self, node: &View<'_>) {
+                self.choice.work.resume(node);
+            }
+
+            fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
+                let node = self.choice.step(node, report);
+                node.into_iter().for_each(|node| self.take(node));
+                ControlFlow::Continue(())
+            }
+
+            fn measures_work(&self) -> bool {
+                true
+            }
+
+            fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
+                self.choice.work.part(end, report)
+            }
+
+            fn end(&mut self, node: &View<'_>) {
+                let node = self.choice.end(node);
+                node.into_iter().for_each(|node| self.take(node));
+            }
+        }
+    )* };
+}
+
+takes_nodes!(Trajectory, Nodes<'_>);

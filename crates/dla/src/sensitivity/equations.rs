@@ -74,7 +74,7 @@ impl StepUnknowns<'_> {
 }
 
 /// `f + A' lambda`.
-pub(crate) fn constrained<const N: usize, const M: usize>(
+pub(super) fn constrained<const N: usize, const M: usize>(
     f: &[Seeded; N],
     a: &[[Seeded; N]; M],
     lambda: &[Seeded; M],
@@ -83,7 +83,7 @@ pub(crate) fn constrained<const N: usize, const M: usize>(
 }
 
 /// `x + h sum_j factors[j] slopes[j]`.
-pub(crate) fn advanced<const N: usize>(
+pub(super) fn advanced<const N: usize>(
     x: &[Seeded; N],
     h: Seeded,
     factors: &[f64],
@@ -95,21 +95,21 @@ pub(crate) fn advanced<const N: usize>(
     })
 }
 
-pub(crate) fn difference<const N: usize>(a: &[Seeded; N], b: &[Seeded; N]) -> [Seeded; N] {
+pub(super) fn difference<const N: usize>(a: &[Seeded; N], b: &[Seeded; N]) -> [Seeded; N] {
     from_fn(|i| a[i] - b[i])
 }
 
 /// `w . f`.
-pub(crate) fn product<const N: usize>(w: &[Seeded; N], f: &[Seeded; N]) -> Seeded {
+pub(super) fn product<const N: usize>(w: &[Seeded; N], f: &[Seeded; N]) -> Seeded {
     (0..N).fold(Seeded::zero(), |sum, i| sum + w[i] * f[i])
 }
 
 /// The error of a method in a basis of admissible velocities, on a system without one.
-pub(crate) const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
+pub(super) const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
     reason: "the method needs a basis of the admissible velocities, and the system has no basis",
 };
 
 /// The dimension `N - M` of the distribution.
-pub(crate) const fn dimension<const N: usize, const M: usize>() -> usize {
+pub(super) const fn dimension<const N: usize, const M: usize>() -> usize {
     AdmissibleBasis::<Seeded, N, M>::DIMENSION
 }

@@ -1,5 +1,6 @@
+use super::methods::Impulse;
 use super::{Differentiable, Sensitivity, SensitivityError, Tangent, TangentRunError};
-use crate::{OneStep, Schedule, State, StepReport};
+use crate::{OneStep, Schedule, State, StepReport, onto_constraint};
 use std::ops::ControlFlow;
 
 impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
@@ -55,5 +56,26 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
             }
         }
         Ok(schedule.steps)
+    }
+
+    /// Brings a velocity onto the constraints as [`onto_constraint`] does, and tangents with it: what happens between two
+    /// smooth pieces of a run, at a node that is fixed in time.
+    ///
+    /// # Errors
+    /// As [`Sensitivity::step`]; state and tangents are then unchanged.
+    pub fn onto_constraint(
+        &self,
+        t: f64,
+        state: &mut State<N>,
+        tangents: &mut [Tangent<N, P>],
+    ) -> Result<(), SensitivityError> {
+        let mut end = *state;
+        onto_constraint(self.system(), t, &mut end)?;
+        let derivative = self.between(&Impulse, (t, 0.0), state, &end, StepReport::of(0))?;
+        *state = end;
+        for tangent in tangents {
+            *tangent = derivative.apply(tangent);
+        }
+        Ok(())
     }
 }

@@ -39,15 +39,9 @@ where
     [(whole, nodes), (resumed, after)]
 }
 
-#[test]
-fn a_resumed_run_has_the_same_bits() {
-    resumed_runs(&[1, 40, 55, 99], 100);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_resumed_run_has_the_same_bits_in_full() {
-    resumed_runs(&[1, 400, 555, 999], 1000);
+test_systems::short_and_full! {
+    a_resumed_run_has_the_same_bits => resumed_runs(&[1, 40, 55, 99], 100);
+    a_resumed_run_has_the_same_bits_in_full => resumed_runs(&[1, 400, 555, 999], 1000);
 }
 
 fn resumed_runs(stops: &[u64], steps: u64) {

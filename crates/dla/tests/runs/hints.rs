@@ -108,7 +108,7 @@ fn of_everything_else() {
     }
 }
 
-/// What was tried with shorter steps takes the place of what the failure alone suggests; what it knows to be right stays.
+/// The outcome of shorter steps replaces the hint of the failure alone; a hint that is certain stays.
 #[test]
 fn of_steps_that_were_tried() {
     let hint = |source, shorter| RunError { shorter, ..RunError::new(1, 0.0, source) }.hint();

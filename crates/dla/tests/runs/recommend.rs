@@ -90,15 +90,9 @@ fn returned<Method: OneStep<3, 1> + Copy>(method: Method, duration: f64, toleran
     (distance, 2.0 * found.steps as f64 * f64::EPSILON * growth * duration)
 }
 
-#[test]
-fn the_symmetry_is_kept() {
-    symmetric_methods_return(&[1e-3], 1e-2);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_symmetry_is_kept_in_full() {
-    symmetric_methods_return(&[1e-3, 1e-6], 1e-3);
+test_systems::short_and_full! {
+    the_symmetry_is_kept => symmetric_methods_return(&[1e-3], 1e-2);
+    the_symmetry_is_kept_in_full => symmetric_methods_return(&[1e-3, 1e-6], 1e-3);
 }
 
 /// The control, whose error is of the first order, returns no nearer than its tolerance has it.

@@ -1,9 +1,9 @@
-//! A method that does what it is told, and what is built on methods: memories.
+//! A method with a script, and memories, which pass through methods built on others.
 
 use dla::{Composition, Dla, Mechanics, OneStep, State, StepError, StepReport};
 use lagrangian::{Constraint, Scalar, System};
 
-/// A point on a line that is led at 1 m/s, which methods that do what they are told ask for nothing.
+/// A point on a line that is led at 1 m/s; a method with a script asks it for nothing.
 #[derive(Clone, Copy)]
 pub(crate) struct Point;
 

@@ -16,11 +16,11 @@ use dla::{
     AnyState, FullMechanics, Method, Observer, OneStep, OwnMethods, Piece, RunError, Schedule, State, Stepper, Subject,
     make_steps, piece_by_piece,
 };
-use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
+use lagrangian::{Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, Slope, Torque};
 use sleigh::{CentreOfMass, Guided, Sleigh};
 use std::sync::LazyLock;
-use test_systems::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall};
+use test_systems::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall, shape};
 
 /// A method as what a system brings of its own: observers and runs that ask for one by its name make it.
 pub(crate) struct Own<Step>(pub(crate) Step);
@@ -58,53 +58,10 @@ pub(crate) fn run_own<Step: OneStep<N, M> + Clone, const N: usize, const M: usiz
     made
 }
 
-macro_rules! shape {
-    ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* } $($more:tt)*) => {
-        $(#[$text])*
-        #[derive(Clone)]
-        pub(crate) enum $name { $($arm($type),)* }
-
-        $(impl From<$type> for $name {
-            fn from(system: $type) -> Self { Self::$arm(system) }
-        })*
-
-        impl System<$n, $m> for $name {
-            #[inline(never)]
-            fn lagrangian<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> S {
-                match self { $(Self::$arm(x) => System::lagrangian(x, t, q, v),)* }
-            }
-            #[inline(never)]
-            fn constraint<S: Scalar>(&self, t: S, q: &[S; $n]) -> Constraint<S, $n, $m> {
-                match self { $(Self::$arm(x) => System::constraint(x, t, q),)* }
-            }
-            #[inline(never)]
-            fn force<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> Option<[S; $n]> {
-                match self { $(Self::$arm(x) => System::force(x, t, q, v),)* }
-            }
-            #[inline(never)]
-            fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<AdmissibleBasis<S, $n, $m>> {
-                match self { $(Self::$arm(x) => System::admissible_basis(x, t, q),)* }
-            }
-            #[inline(never)]
-            fn holonomic<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<[Option<S>; $m]> {
-                match self { $(Self::$arm(x) => System::holonomic(x, t, q),)* }
-            }
-            #[inline(never)]
-            fn nonlinear<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> Option<[Option<S>; $m]> {
-                match self { $(Self::$arm(x) => System::nonlinear(x, t, q, v),)* }
-            }
-            fn angles(&self) -> [bool; $n] {
-                match self { $(Self::$arm(x) => System::angles(x),)* }
-            }
-            $($more)*
-        }
-    };
-}
-
 shape! {
     /// One coordinate, no constraint.
     #[derive(Copy)]
-    Free<1, 0> {
+    pub(crate) Free<1, 0> {
         Oscillator: small::Oscillator,
         Falling: observers::Falling,
     }
@@ -113,7 +70,7 @@ shape! {
 shape! {
     /// One coordinate, one constraint.
     #[derive(Copy)]
-    One<1, 1> {
+    pub(crate) One<1, 1> {
         Line: drive::Line,
         Nowhere: starts::Nowhere,
         Point: scripted::Point,
@@ -124,7 +81,7 @@ shape! {
 shape! {
     /// Two coordinates, one constraint.
     #[derive(Copy)]
-    Two<2, 1> {
+    pub(crate) Two<2, 1> {
         Cart: rest::Cart<false>,
         CartInBasis: rest::Cart<true>,
         Pendulum: rest::Pendulum,
@@ -149,7 +106,7 @@ shape! {
 shape! {
     /// Three coordinates, one constraint.
     #[derive(Copy)]
-    Three<3, 1> {
+    pub(crate) Three<3, 1> {
         Corners: corners::Skate,
         Skate: rest::Skate<false>,
         SkateInBasis: rest::Skate<true>,
@@ -170,7 +127,7 @@ shape! {
 shape! {
     /// Three coordinates, two constraints.
     #[derive(Copy)]
-    ThreeTwo<3, 2> {
+    pub(crate) ThreeTwo<3, 2> {
         Dropping: dropping::Dropping,
         Towed: continued::Towed,
         Twice: degenerate::Twice,
@@ -182,7 +139,7 @@ shape! {
 shape! {
     /// Four coordinates, two constraints.
     #[derive(Copy)]
-    Four<4, 2> {
+    pub(crate) Four<4, 2> {
         TwoBlades: redundant::TwoBlades,
         Disk: small::Disk,
         Suslov: Suslov,
@@ -192,7 +149,7 @@ shape! {
 shape! {
     /// Five coordinates, two constraints.
     #[derive(Copy)]
-    Five<5, 2> {
+    pub(crate) Five<5, 2> {
         AngleBall: angles::AngleBall,
         Disk: disk::Disk,
     }
@@ -201,7 +158,7 @@ shape! {
 shape! {
     /// Six coordinates, three constraints.
     #[derive(Copy)]
-    Six<6, 3> {
+    pub(crate) Six<6, 3> {
         InCylinder: cylinder::Ball,
         Chaplygin: ChaplyginBall,
         OnTurntable: TurntableBall,
@@ -238,7 +195,7 @@ macro_rules! by_hand {
     ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* }) => {
         shape! {
             $(#[$text])*
-            $name<$n, $m> { $($arm: $type,)* }
+            pub(crate) $name<$n, $m> { $($arm: $type,)* }
             fn reduced(&self) -> impl Reduced<$n, $m> {
                 self
             }

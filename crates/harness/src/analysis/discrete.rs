@@ -4,17 +4,17 @@ use super::linear_map::{AllowedDirections, with_family};
 use super::manifold::{positions, with_rows};
 use super::root::nearest_root;
 use super::spectrum::{Spectrum, size};
-use crate::run::integrate_pieces;
+use crate::Run;
 use crate::{Method, MethodKind};
 use dla::{AnyState, Mechanism, Report, Schedule, SensitivityError, Size};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-/// Whether the steps of a method have a [`DiscreteMap`]: only the family of `dla`, `rk4` and `rk4-reduced` have one.
+/// Whether the steps of a method have a [`DiscreteMap`]: only the family of `dla` and `rk4` have one.
 #[must_use]
 pub fn has_map(method: &Method) -> bool {
-    use MethodKind::{Composed, Dla, DlaAlpha, DlaTrapezoid, Rk4, Rk4Reduced};
-    matches!(method.info().kind, Dla | DlaTrapezoid | DlaAlpha | Composed(_) | Rk4 | Rk4Reduced)
+    use MethodKind::{Composed, Dla, DlaAlpha, DlaTrapezoid, Rk4};
+    matches!(method.info().kind, Dla | DlaTrapezoid | DlaAlpha | Composed(_) | Rk4)
 }
 
 /// The map of one step of a method about an equilibrium of the flow.
@@ -192,7 +192,7 @@ impl<'a> DiscreteMap<'a> {
 
     fn stepped(&self, h: f64, start: &AnyState) -> Option<AnyState> {
         let (mut end, schedule) = (start.clone(), Schedule { t0: 0.0, step: h, steps: 1 });
-        (integrate_pieces(self.system, self.method, &schedule, &mut end, &mut ()) == Ok(1)).then_some(end)
+        (Run::of(self.system, self.method).moves(&schedule, &mut end) == Ok(1)).then_some(end)
     }
 
     fn linearised(&self, slope: &DMatrix<f64>, shape: &[usize]) -> Option<Spectrum> {

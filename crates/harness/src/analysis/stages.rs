@@ -6,7 +6,7 @@ use lagrangian::{Scalar, Seeded};
 
 const MAX_SWEEPS: u32 = 100;
 
-/// A Runge-Kutta method on the reduced equations: collocation, or an explicit one.
+/// Gauss collocation on the reduced equations.
 ///
 /// Its stages are iterated on dual numbers, value and derivatives together, until both change by round-off only:
 /// the end then has the exact derivative of the discrete map in its start.
@@ -71,16 +71,6 @@ impl Stages {
             nodes: nodes.to_vec(),
             weights: weights.to_vec(),
             coefficients: coefficients.iter().map(|row| row.to_vec()).collect(),
-        }
-    }
-
-    /// The classical Runge-Kutta method.
-    pub(super) fn rk4() -> Self {
-        let row = |i: usize, a: f64| (0..4).map(|j| if j + 1 == i { a } else { 0.0 }).collect();
-        Self {
-            nodes: vec![0.0, 0.5, 0.5, 1.0],
-            weights: vec![1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
-            coefficients: vec![row(0, 0.0), row(1, 0.5), row(2, 0.5), row(3, 1.0)],
         }
     }
 

@@ -35,8 +35,7 @@ pub(super) struct Local {
 pub(super) struct Steps<'a> {
     system: &'a dyn Mechanism,
     method: &'a Method,
-    /// The stages of a Runge-Kutta method on the reduced equations, which is differentiated on numbers with derivatives; `None` for any
-    /// other method, which is differentiated by the implicit function theorem.
+    /// The stages of a collocation on the reduced equations, which is differentiated on numbers with derivatives; `None` for any other method, which is differentiated by the implicit function theorem.
     stages: Option<Stages>,
     variables: Variables,
     /// The number of directions; and the directions at the last node, as columns, if positions are constrained.
@@ -54,10 +53,9 @@ impl<'a> Steps<'a> {
         method: &'a Method,
         (t, q): (f64, &[f64]),
     ) -> Result<Self, SensitivityError> {
-        system.has_derivatives(method)?;
+        system.has_tangents(method)?;
         let stages = match method.info().kind {
             MethodKind::Gauss(stages) => Some(Stages::gauss(stages)),
-            MethodKind::Rk4Reduced => Some(Stages::rk4()),
             _ => None,
         };
         let variables = Variables::new(system, own);

@@ -1,7 +1,9 @@
+use super::Blocks;
 use super::blocks::DriftBlock;
+use crate::Trend;
 
 /// Number of batches.
-pub(super) const BATCHES: usize = 32;
+const BATCHES: usize = 32;
 
 /// The means of 32 batches of a series, about their least-squares line; time in units of the whole series.
 ///
@@ -18,11 +20,7 @@ pub(super) struct Batches {
 impl Batches {
     /// The batches of a series; `None` if it is too short.
     pub(super) fn of(series: &[f64]) -> Option<Self> {
-        if series.len() < 2 * BATCHES {
-            return None;
-        }
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-        let means: Vec<f64> = (0..BATCHES).map(|j| mean(&series[batch(j, series.len())])).collect();
+        let means = means(series)?;
         let (center, slope) = line(&means);
         let times = || (0..BATCHES).map(|j| (j as f64 + 0.5) / BATCHES as f64 - 0.5);
         Some(Self {
@@ -78,8 +76,17 @@ impl Batches {
     }
 }
 
+/// The means of the batches of a series; `None` if it is too short.
+fn means(series: &[f64]) -> Option<Vec<f64>> {
+    (series.len() >= 2 * BATCHES).then(|| (0..BATCHES).map(|j| mean(&series[batch(j, series.len())])).collect())
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
 /// The places of batch `j` in a series.
-pub(super) fn batch(j: usize, length: usize) -> std::ops::Range<usize> {
+fn batch(j: usize, length: usize) -> std::ops::Range<usize> {
     j * length / BATCHES..(j + 1) * length / BATCHES
 }
 
@@ -155,4 +162,49 @@ fn half_range(ranges: &[[f64; 2]], slope: f64, length: usize) -> f64 {
         highest = highest.max(max - on_line);
     }
     0.5 * (highest - lowest)
+}
+
+/// The growth exponent of a series from its structure function `D(l) = mean (x_{i+l} - x_i)^2`: half the slope of `log D` against `log l`,
+/// over the octaves of lags between a 64th and a quarter of the series; `None` if the series is too short.
+///
+/// It is 0 for a bounded series, 1/2 for a random walk, 1 for a line. All lags of an octave count, so that none agrees with a period.
+pub(super) fn exponent(series: &[f64]) -> Option<f64> {
+    let shortest = series.len() / 64;
+    if shortest == 0 {
+        return None;
+    }
+    let points = (0..4).map(|octave| {
+        let lags = (shortest << octave)..(shortest << (octave + 1));
+        let count = lags.len() as f64;
+        let mean_lag = lags.clone().map(|lag| lag as f64).sum::<f64>() / count;
+        let structure = lags.map(|lag| structure(series, lag)).sum::<f64>() / count;
+        (mean_lag.ln(), structure.ln())
+    });
+    let mut line = Trend::default();
+    points.for_each(|(x, y)| line.add(x, y));
+    // A constant series does not grow.
+    Some(line.slope().filter(|slope| slope.is_finite()).map_or(0.0, |slope| 0.5 * slope))
+}
+
+fn structure(series: &[f64], lag: usize) -> f64 {
+    let squares = series.iter().zip(&series[lag..]).map(|(a, b)| (b - a) * (b - a));
+    squares.sum::<f64>() / (series.len() - lag) as f64
+}
+
+/// Student's factor for 95 %, both sides, at the 31 degrees of freedom of 32 batches less one.
+const T95: f64 = 2.040;
+
+impl Blocks {
+    /// Half the width of the 95 % confidence interval of the mean of the series, from the scatter of the means of 32 batches; `None` if the
+    /// series is too short.
+    ///
+    /// It holds if the series is stationary and batches are longer than its correlations (Schmeiser 1982, Oper. Res. 30, 556-568).
+    #[must_use]
+    pub fn interval_of_mean(&self) -> Option<f64> {
+        let series: Vec<f64> = self.means().collect();
+        let means = means(&series)?;
+        let center = mean(&means);
+        let variance = means.iter().map(|mean| (mean - center).powi(2)).sum::<f64>() / (BATCHES - 1) as f64;
+        Some(T95 * (variance / BATCHES as f64).sqrt())
+    }
 }

@@ -3,8 +3,6 @@
 mod batches;
 mod blocks;
 mod energies;
-mod growth;
-mod mean;
 
 pub use blocks::Blocks;
 pub use energies::{Energies, EnergyJump};
@@ -101,7 +99,7 @@ impl Drift {
         let (_, slope) = batches::line(&means);
         let amplitude = batches::amplitude(&means, &ranges);
         let measured = Self { amplitude: amplitude * size, slope: slope * size / run, ..nothing };
-        let (Some(batches), Some(exponent)) = (Batches::of(&means), growth::exponent(&means)) else { return measured };
+        let (Some(batches), Some(exponent)) = (Batches::of(&means), batches::exponent(&means)) else { return measured };
         let stationary = batches.stationarity() < STATIONARY && exponent < BETWEEN;
         let error = if stationary { batches.error() } else { batches.error().max(batches.error_of_walk()) };
         // The means of constants differ by their rounding.

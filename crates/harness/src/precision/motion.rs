@@ -1,4 +1,4 @@
-use crate::{Method, integrate_pieces};
+use crate::{Method, Run};
 use dla::{Mechanism, RunError, Schedule, StepError, pieces};
 
 /// A motion to be computed again and again, with other methods and other steps.
@@ -58,7 +58,7 @@ impl<'a> ReferenceMotion<'a> {
     /// [`RunError`] with the step that failed.
     pub fn end(&self, method: &Method, steps: u64) -> Result<Vec<f64>, RunError> {
         let mut state = self.system.state(&self.q, &self.v);
-        let made = integrate_pieces(self.system, method, &self.schedule(steps), &mut state, &mut ())?;
+        let made = Run::of(self.system, method).moves(&self.schedule(steps), &mut state)?;
         if made < steps {
             let time = self.schedule(steps).time(made);
             return Err(RunError::new(made + 1, time, StepError::Stopped));

@@ -9,7 +9,7 @@ mod parking;
 mod phase;
 
 use dla::{AnyState, Observer, PiecewiseMechanics, Schedule, State, Subject};
-use harness::{Method, integrate_pieces};
+use harness::{Method, Run};
 
 /// Runs a method on a system that may jump.
 fn run<const N: usize, const M: usize>(
@@ -21,6 +21,6 @@ fn run<const N: usize, const M: usize>(
 ) {
     let (method, schedule) = (Method::named(method, None).unwrap(), Schedule { t0: 0.0, step, steps });
     let mut moved = AnyState::from(*state);
-    integrate_pieces(&Subject::from(system), &method, &schedule, &mut moved, observer).unwrap();
+    Run::of(&Subject::from(system), &method).observe(observer).moves(&schedule, &mut moved).unwrap();
     *state = *moved.typed().unwrap();
 }

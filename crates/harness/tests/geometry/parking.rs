@@ -27,15 +27,9 @@ fn distance(a: &SleighState, b: &SleighState) -> f64 {
     (a.x - b.x).hypot(a.y - b.y).max(turn.abs())
 }
 
-#[test]
-fn random_pairs_are_reached() {
-    check_pairs(3);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_hundred_random_pairs_are_reached() {
-    check_pairs(100);
+test_systems::short_and_full! {
+    random_pairs_are_reached => check_pairs(3);
+    a_hundred_random_pairs_are_reached => check_pairs(100);
 }
 
 /// Smooth controls, sampled at equal steps over whole pulses: the midpoint rule integrates them to rounding.

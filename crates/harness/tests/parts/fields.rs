@@ -5,15 +5,9 @@ use lagrangian::With;
 use sleigh::SleighState;
 use sleigh::effects::{Bowl, Drag, Hill, Hills};
 
-#[test]
-fn heavy_drag() {
-    dragged(&[(0.1, 4), (1.0, 2), (3.0, 2)], 1);
-}
-
-#[test]
-#[ignore = "slow"]
-fn heavy_drag_at_length() {
-    dragged(&[(0.1, 20), (1.0, 20), (3.0, 20), (1e3, 4)], 20);
+test_systems::short_and_full! {
+    heavy_drag => dragged(&[(0.1, 4), (1.0, 2), (3.0, 2)], 1);
+    heavy_drag_at_length => dragged(&[(0.1, 20), (1.0, 20), (3.0, 20), (1e3, 4)], 20);
 }
 
 /// Straight ahead under drag: `u = e^(-c t/m)`, and the way is what of it is gone, times `m/c`. Nothing turns it round. Steps of so many
@@ -43,15 +37,9 @@ fn dragged(cases: &[(f64, u64)], of_a_million: u64) {
     assert!(run.substeps.divided > 0 && run.substeps.parts < 10_000, "{}", run.substeps.parts);
 }
 
-#[test]
-fn stiff_bowl() {
-    swings(&[(0.01, 10), (1.0, 7), (10.0, 1)]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn stiff_bowl_in_full() {
-    swings(&[(0.01, 200), (1.0, 20), (10.0, 10), (100.0, 2)]);
+test_systems::short_and_full! {
+    stiff_bowl => swings(&[(0.01, 10), (1.0, 7), (10.0, 1)]);
+    stiff_bowl_in_full => swings(&[(0.01, 200), (1.0, 20), (10.0, 10), (100.0, 2)]);
 }
 
 /// To and fro in a bowl, `x = cos(w t)`, up to five swings a step, and sixteen. A part is wrong by a ten-thousandth of the velocity at
@@ -76,17 +64,11 @@ fn swings(cases: &[(f64, u64)]) {
     }
 }
 
-/// Past the first hill; the steps of the reference are a third of its width.
-#[test]
-fn steep_hill() {
-    over_hills(&[(0.004, 5.0)], 8, 16);
-}
-
-/// The steps of the reference are 0.2 mm.
-#[test]
-#[ignore = "slow"]
-fn steep_hill_in_full() {
-    over_hills(&[(0.0, 0.2), (0.004, 5.0), (0.0, -3.0)], 100, 256);
+test_systems::short_and_full! {
+    /// Past the first hill; the steps of the reference are a third of its width.
+    steep_hill => over_hills(&[(0.004, 5.0)], 8, 16);
+    /// The steps of the reference are 0.2 mm.
+    steep_hill_in_full => over_hills(&[(0.0, 0.2), (0.004, 5.0), (0.0, -3.0)], 100, 256);
 }
 
 /// Hills of 1 cm width in the way of steps of 5 cm. The reference is of order 12, in so many steps for each of them.

@@ -90,7 +90,7 @@ fn step_lengths() {
     assert!(run.substeps.divided > 0 && run.substeps.parts < 1000, "{}", run.substeps.parts);
     // What would be taken for the motion: the mean spin is nothing, and no node says so but by its own.
     let (method, request) = (Method::named("dla", None).unwrap(), request(&start, (1e12, 10)));
-    let whole = harness::run(&Subject::from(&sleigh(0.5)), &method, &request, &mut ());
+    let whole = harness::Run::of(&Subject::from(&sleigh(0.5)), &method).timed(&request);
     assert!((whole.q[2] - exact.at(1e13).heading).abs() > 0.5);
 }
 
@@ -100,7 +100,7 @@ fn step_lengths() {
 fn what_needs_too_many_parts_says_so() {
     let start = SleighState { speed: 1.0, turn_rate: 0.3, ..SleighState::default() };
     let method = Method::named("dla4", None).unwrap().with_substeps(Substeps::new(53, 10_000));
-    let record = harness::run(&Subject::from(&sleigh(0.5)), &method, &request(&start, (1e12, 1)), &mut ());
+    let record = harness::Run::of(&Subject::from(&sleigh(0.5)), &method).timed(&request(&start, (1e12, 1)));
     let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
     assert_eq!((why.tried, record.steps, failure.source), (10_000, 0, why.source));
     assert!(why.part < 10.0 && why.time > 1e3 && why.time < 1e6, "{why}");

@@ -4,8 +4,9 @@ mod fields;
 mod free;
 
 use crate::common::sleigh_at;
+use crate::common::watched;
 use dla::{Node, PiecewiseMechanics, Schedule, Subject, Substeps};
-use harness::{Method, Request, SubstepSummary, run_watched};
+use harness::{Method, Request, SubstepSummary};
 use sleigh::{Sleigh, SleighState};
 
 /// The halves of every part agree to this part of the velocity. Ten parts of a turn that are wrong by that, all in the same sense,
@@ -37,9 +38,9 @@ fn request(start: &SleighState, (step, steps): (f64, u64)) -> Request {
 /// The run by the method of that name.
 fn by(name: &str, system: &impl PiecewiseMechanics<3, 1>, start: &SleighState, steps: (f64, u64)) -> Run {
     let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
-    let made = run_watched(&Subject::from(system), &method, &request(start, steps), (&[], 1), Some(1), &mut ());
+    let made = watched(&Subject::from(system), &method, &request(start, steps), &[], 1);
     assert!(made.record.failure.is_none(), "{name}: {:?}", made.record.failure);
-    let nodes = made.trajectory.unwrap().nodes().to_vec();
+    let nodes = made.nodes;
     // The blade does not slip at any node, by more than rounding of the velocities there.
     for node in &nodes {
         let size = node.v.iter().fold(0.0, |sum, v| sum + v.abs());

@@ -114,15 +114,9 @@ fn check_saddle(by_hand: bool, steps: (f64, u64, u64)) {
     assert_relative_eq!(kaplan_yorke(&[1.0, -1.0]), 2.0);
 }
 
-#[test]
-fn the_straight_motion_of_the_free_sleigh() {
-    check_straight_motion(0.5, 120, [40, 40]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_straight_motion_of_the_free_sleigh_in_full() {
-    check_straight_motion(0.1, 800, [2000, 400]);
+test_systems::short_and_full! {
+    the_straight_motion_of_the_free_sleigh => check_straight_motion(0.5, 120, [40, 40]);
+    the_straight_motion_of_the_free_sleigh_in_full => check_straight_motion(0.1, 800, [2000, 400]);
 }
 
 /// About straight motion at the speed `u` the spin has the eigenvalue `-c u`, and all else is neutral. Differences in heading and
@@ -144,15 +138,9 @@ fn check_straight_motion(step: f64, settle: u64, [by_gauss, by_dla]: [u64; 2]) {
     }
 }
 
-#[test]
-fn a_balanced_sleigh_in_a_bowl_is_regular() {
-    check_balanced((0.2, 100, 300));
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_balanced_sleigh_in_a_bowl_is_regular_in_full() {
-    check_balanced((0.1, 2000, 20_000));
+test_systems::short_and_full! {
+    a_balanced_sleigh_in_a_bowl_is_regular => check_balanced((0.2, 100, 300));
+    a_balanced_sleigh_in_a_bowl_is_regular_in_full => check_balanced((0.1, 2000, 20_000));
 }
 
 /// With the centre of mass at the blade the motion in a round bowl is integrable: the spin stays, and in axes that turn with it the
@@ -212,15 +200,9 @@ fn long_strange_attractors() {
     check_attractors(200_000, 200_000);
 }
 
-#[test]
-fn far_from_the_origin() {
-    check_far(400);
-}
-
-#[test]
-#[ignore = "slow"]
-fn far_from_the_origin_in_full() {
-    check_far(3000);
+test_systems::short_and_full! {
+    far_from_the_origin => check_far(400);
+    far_from_the_origin_in_full => check_far(3000);
 }
 
 /// Twenty kilometres away the places within a step are rounded to more than the slopes of its stages are, and yet each step ends.
@@ -253,15 +235,9 @@ impl<Sys: System<3, 1>> System<3, 1> for Plain<Sys> {
     }
 }
 
-#[test]
-fn three_ways_to_differentiate_a_step() {
-    check_three_ways(16);
-}
-
-#[test]
-#[ignore = "slow"]
-fn three_ways_to_differentiate_a_step_in_full() {
-    check_three_ways(100);
+test_systems::short_and_full! {
+    three_ways_to_differentiate_a_step => check_three_ways(16);
+    three_ways_to_differentiate_a_step_in_full => check_three_ways(100);
 }
 
 /// Stages on dual numbers, with reduced equations by hand and without, and the implicit function theorem: the same exponents.

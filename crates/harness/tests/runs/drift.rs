@@ -1,9 +1,9 @@
 //! Series of known kind get the verdict of their kind, at every scale; and a run saved in parts is the run made at once.
 
-use super::{Particle, request};
+use super::{Particle, request, run};
 use approx::assert_relative_eq;
 use dla::{Checkpoint, Subject};
-use harness::{Blocks, Drift, DriftVerdict, Method, Record, Request, Saving, run, run_saved};
+use harness::{Blocks, Drift, DriftVerdict, Method, Record, Request, Run, Saving};
 use std::f64::consts::TAU;
 
 /// Values a series has: not a power of two, so that blocks and periods do not agree.
@@ -80,15 +80,9 @@ fn a_slope_is_seen_above_the_noise_and_not_below() {
     assert_relative_eq!(steep.exponent.unwrap(), 1.0, max_relative = 1e-3);
 }
 
-#[test]
-fn a_random_walk_is_one_and_its_slope_is_none() {
-    check_walks(20, 14, 2);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_random_walk_is_one_and_its_slope_is_none_in_full() {
-    check_walks(100, 80, 6);
+test_systems::short_and_full! {
+    a_random_walk_is_one_and_its_slope_is_none => check_walks(20, 14, 2);
+    a_random_walk_is_one_and_its_slope_is_none_in_full => check_walks(100, 80, 6);
 }
 
 /// Of `all` walks so many at least are seen as such, and so many at most as lines: at the 5 % and 1 % of the tests and three standard
@@ -116,15 +110,9 @@ fn check_walks(all: u64, least: u32, most: u32) {
     assert_eq!(verdicts(walk), DriftVerdict::RandomWalk);
 }
 
-#[test]
-fn a_chaotic_wander_is_bounded() {
-    check_wander(10, [8, 9]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_chaotic_wander_is_bounded_at_length() {
-    check_wander(100, [90, 95]);
+test_systems::short_and_full! {
+    a_chaotic_wander_is_bounded => check_wander(10, [8, 9]);
+    a_chaotic_wander_is_bounded_at_length => check_wander(100, [90, 95]);
 }
 
 /// Of `all` wanders so many at least are seen to be bounded, and so many to drift where they do.
@@ -203,19 +191,13 @@ fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) 
     let mut saving = Saving { identity: &identity, from, every: Some(1 << 20), save: &mut save };
     let system = Particle::of(1.0);
     let (system, mut until) = (Subject::from(&system), Until(0, stop));
-    let made = run_saved(&system, &method, &request(steps, 0.05), &mut saving, None, &mut until);
-    (made.unwrap(), last)
+    let made = Run::of(&system, &method).progress(&mut until).saved(&request(steps, 0.05), &mut saving, None);
+    (made.unwrap().record, last)
 }
 
-#[test]
-fn an_interrupted_run_goes_on_to_the_same_bit() {
-    check_interrupted(5000, 2000);
-}
-
-#[test]
-#[ignore = "slow"]
-fn an_interrupted_run_goes_on_to_the_same_bit_in_full() {
-    check_interrupted(100_000, 30_000);
+test_systems::short_and_full! {
+    an_interrupted_run_goes_on_to_the_same_bit => check_interrupted(5000, 2000);
+    an_interrupted_run_goes_on_to_the_same_bit_in_full => check_interrupted(100_000, 30_000);
 }
 
 fn check_interrupted(steps: u64, stop: u64) {
@@ -237,7 +219,7 @@ fn check_interrupted(steps: u64, stop: u64) {
 fn a_run_is_as_far_from_its_leaf_as_its_method_goes() {
     let system = Particle { leaf: true, ..Particle::of(1.0) };
     let request = Request { q: vec![0.1, 0.2, 0.02], v: vec![0.9, 0.7, 0.2 * 0.7], ..request(2000, 0.05) };
-    let record = |name: &str| run(&Subject::from(&system), &Method::named(name, None).unwrap(), &request, &mut ());
+    let record = |name: &str| run(&Subject::from(&system), &Method::named(name, None).unwrap(), &request);
     // The chord of the midpoint rule has dz = y dy with the mean of y: exactly the change of y^2/2. The rest is rounding:
     // of z, of size one, at each of the nodes.
     let (dla, rk4) = (record("dla"), record("rk4"));

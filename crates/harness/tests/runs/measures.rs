@@ -74,9 +74,7 @@ fn defect(method: &Method, h: f64) -> f64 {
 /// Every method keeps the measure to its order, or better: the defect of a step is `O(h^(p+1))`, and not zero.
 #[test]
 fn the_defect_of_each_method() {
-    for (name, order, h) in
-        [("dla", 2.0, 0.1), ("dla4", 4.0, 0.2), ("lobatto3", 4.0, 0.2), ("gauss4", 4.0, 0.6), ("rk4-reduced", 4.0, 0.2)]
-    {
+    for (name, order, h) in [("dla", 2.0, 0.1), ("dla4", 4.0, 0.2), ("gauss4", 4.0, 0.6)] {
         let method = Method::named(name, None).unwrap();
         let [coarse, fine] = [h, 0.5 * h].map(|h| defect(&method, h).abs());
         let measured = (coarse / fine).log2();

@@ -10,7 +10,6 @@ mod large;
 mod measures;
 mod precision;
 mod same_bits;
-mod sensitivity;
 mod substeps;
 mod train_pieces;
 mod trains;
@@ -19,8 +18,8 @@ mod watched;
 mod work;
 
 use approx::assert_relative_eq;
-use dla::{Schedule, Subject};
-use harness::{METHODS, Method, MethodError, MethodInfo, MethodKind, Request, Trend, run};
+use dla::{Mechanism, Schedule, Subject};
+use harness::{METHODS, Method, MethodError, MethodInfo, MethodKind, Record, Request, Run, Trend};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
 
@@ -65,6 +64,10 @@ impl Piecewise for Particle {
     }
 }
 
+fn run(system: &dyn Mechanism, method: &Method, request: &Request) -> Record {
+    Run::of(system, method).timed(request)
+}
+
 fn request(steps: u64, step: f64) -> Request {
     let (q, v) = (vec![0.1, 0.2, 0.3], vec![0.9, 0.7, 0.2 * 0.9]);
     Request { schedule: Schedule { t0: 0.0, step, steps }, q, v, samples: 10 }
@@ -74,7 +77,9 @@ fn request(steps: u64, step: f64) -> Request {
 fn a_record_tells_of_its_run() {
     let mut told = 0;
     let method = Method::named("dla", None).unwrap();
-    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(95, 0.05), &mut |steps| told += steps);
+    let record = Run::of(&Subject::from(&Particle::of(1.0)), &method)
+        .progress(&mut |steps| told += steps)
+        .timed(&request(95, 0.05));
     assert_eq!((record.steps, told), (95, 95));
     assert_relative_eq!(record.t, 95.0 * 0.05);
     assert!(record.failure.is_none() && record.wall_seconds > 0.0);
@@ -91,7 +96,7 @@ fn a_record_tells_of_its_run() {
 #[test]
 fn explicit_methods_have_no_newton() {
     let method = Method::named("rk4", None).unwrap();
-    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(20, 0.05), &mut ());
+    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(20, 0.05));
     assert_eq!((record.newton.mean.to_bits(), record.newton.max), (0, 0));
     assert!(record.constraint_max > 0.0);
 }
@@ -100,7 +105,7 @@ fn explicit_methods_have_no_newton() {
 #[test]
 fn a_refusal_is_a_record_with_its_reason() {
     let method = Method::named("rk4-reduced", None).unwrap();
-    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(20, 0.05), &mut ());
+    let record = run(&Subject::from(&Particle::of(1.0)), &method, &request(20, 0.05));
     let failure = record.failure.unwrap();
     assert_eq!((failure.step, record.steps), (1, 0));
     assert!(failure.to_string().contains("basis"), "{failure}");
@@ -114,11 +119,11 @@ fn a_run_ends_where_the_numbers_do() {
     let at_the_end = |step| Request { q: vec![f64::MAX, 0.0, 0.0], v: vec![1.0, 0.0, 0.0], ..request(2, step) };
     for info in general() {
         let method = Method::named(info.name, None).unwrap();
-        let record = run(&system, &method, &at_the_end(1e293), &mut ());
+        let record = run(&system, &method, &at_the_end(1e293));
         assert!(record.failure.is_some() && record.steps == 0, "{record:?}");
         assert_eq!((record.q[0], record.v[0]), (f64::MAX, 1.0), "{}", info.name);
         // The control: an ordinary step is below the rounding of such a place, and is made.
-        let record = run(&system, &method, &at_the_end(1.0), &mut ());
+        let record = run(&system, &method, &at_the_end(1.0));
         assert!(record.failure.is_none() && record.q[0].to_bits() == f64::MAX.to_bits(), "{record:?}");
     }
 }

@@ -1,8 +1,9 @@
 //! Every method gives the same bits each time: again, on several threads at once, and from any checkpoint.
 
-use super::{Particle, families, general, request};
-use dla::{Checkpoint, Subject};
-use harness::{Method, MethodInfo, Record, Saving, run, run_saved};
+use super::{Particle, families, general, request, run};
+use crate::common::{bits, goes_on_to_the_same_bits};
+use dla::Subject;
+use harness::{Method, MethodInfo, Record};
 
 /// The steps of a run, and after how many a checkpoint is made. The end of the run is no checkpoint of its own, nor the end of a piece.
 type Length = (u64, u64);
@@ -17,33 +18,17 @@ fn system() -> Particle {
 /// All that a run measures but its time, each number with every digit and its sign.
 fn told(record: Record) -> String {
     assert!(record.failure.is_none(), "{record:?}");
-    format!("{:?}", Record { wall_seconds: 0.0, ..record })
+    bits(&record)
 }
 
 fn once(info: &MethodInfo, (steps, _): Length) -> String {
     let method = Method::named(info.name, Some(0.3)).unwrap();
-    told(run(&Subject::from(&system()), &method, &request(steps, 0.05), &mut ()))
+    told(run(&Subject::from(&system()), &method, &request(steps, 0.05)))
 }
 
-/// A run with all of its checkpoints, as their text gives them back.
-fn saved(info: &MethodInfo, (steps, every): Length, from: Option<&Checkpoint>) -> (String, Vec<Checkpoint>) {
-    let mut all = Vec::new();
-    let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
-    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(every), save: &mut save };
-    let method = Method::named(info.name, Some(0.3)).unwrap();
-    let made = run_saved(&Subject::from(&system()), &method, &request(steps, 0.05), &mut saving, None, &mut ());
-    (told(made.unwrap()), all)
-}
-
-#[test]
-fn threads_give_the_same_bits() {
-    check_threads(&families(), 2, SHORT);
-}
-
-#[test]
-#[ignore = "slow"]
-fn threads_give_the_same_bits_at_length() {
-    check_threads(&general(), 4, LONG);
+test_systems::short_and_full! {
+    threads_give_the_same_bits => check_threads(&families(), 2, SHORT);
+    threads_give_the_same_bits_at_length => check_threads(&general(), 4, LONG);
 }
 
 fn check_threads<Infos>(methods: &Infos, threads: usize, length: Length)
@@ -66,37 +51,22 @@ where
     });
 }
 
-#[test]
-fn every_checkpoint_leads_to_the_same_bits() {
-    check_checkpoints(families(), SHORT);
-}
-
-#[test]
-#[ignore = "slow"]
-fn every_checkpoint_leads_to_the_same_bits_at_length() {
-    check_checkpoints(general(), LONG);
+test_systems::short_and_full! {
+    every_checkpoint_leads_to_the_same_bits => check_checkpoints(families(), SHORT);
+    every_checkpoint_leads_to_the_same_bits_at_length => check_checkpoints(general(), LONG);
 }
 
 fn check_checkpoints(methods: impl Iterator<Item = &'static MethodInfo>, length: Length) {
     for info in methods {
-        let (whole, checkpoints) = saved(info, length, None);
-        assert_eq!(whole, once(info, length), "{}: watched in parts, and at once", info.name);
-        assert_eq!(checkpoints.len() as u64, length.0.div_ceil(length.1), "{}", info.name);
-        for checkpoint in &checkpoints {
-            assert_eq!(saved(info, length, Some(checkpoint)).0, whole, "{}", info.name);
-        }
+        let method = Method::named(info.name, Some(0.3)).unwrap();
+        let whole = goes_on_to_the_same_bits(&Subject::from(&system()), &method, &request(length.0, 0.05), length.1);
+        assert_eq!(told(whole), once(info, length), "{}", info.name);
     }
 }
 
-#[test]
-fn a_bit_of_the_start_shows() {
-    check_bit(families(), SHORT);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_bit_of_the_start_shows_at_length() {
-    check_bit(general(), LONG);
+test_systems::short_and_full! {
+    a_bit_of_the_start_shows => check_bit(families(), SHORT);
+    a_bit_of_the_start_shows_at_length => check_bit(general(), LONG);
 }
 
 /// The control: what is compared tells the smallest change of a start.
@@ -105,7 +75,7 @@ fn check_bit(methods: impl Iterator<Item = &'static MethodInfo>, length: Length)
         let method = Method::named(info.name, Some(0.3)).unwrap();
         let mut request = request(length.0, 0.05);
         request.q[0] = request.q[0].next_up();
-        let other = told(run(&Subject::from(&system()), &method, &request, &mut ()));
+        let other = told(run(&Subject::from(&system()), &method, &request));
         assert_ne!(other, once(info, length), "{}", info.name);
     }
 }

@@ -1,8 +1,9 @@
 //! Runs whose steps may be made in parts: measured, watched, saved, stopped, and those of trains.
 
-use super::{Particle, families, general, request};
-use dla::{Checkpoint, Event, Subject, Substeps, Trajectory};
-use harness::{Method, MethodInfo, Progress, Record, Request, Saving, run, run_saved, run_watched};
+use super::{Particle, families, general, request, run};
+use crate::common::{bits, goes_on_to_the_same_bits, resumed, saved, watched};
+use dla::{Event, Subject, Substeps};
+use harness::{Method, MethodInfo, Progress, Record, Request};
 
 fn in_parts(name: &str) -> Method {
     Method::named(name, Some(0.3)).unwrap().with_substeps(Substeps::default())
@@ -12,29 +13,18 @@ fn system() -> Particle {
     Particle { basis: true, ..Particle::of(100.0) }
 }
 
-/// All but the time and what was divided.
-fn told(record: &Record) -> String {
-    format!("{:?}", Record { wall_seconds: 0.0, substeps: None, ..record.clone() })
-}
-
-#[test]
-fn steps_that_are_too_long_are_made_in_parts() {
-    check_long_steps(&["dla", "lobatto3", "energy4", "implicit-midpoint"], 2, 20);
-}
-
-#[test]
-#[ignore = "slow"]
-fn steps_that_are_too_long_are_made_in_parts_in_full() {
-    check_long_steps(&["dla", "dla4", "lobatto3", "energy4", "rk4-reduced", "implicit-midpoint"], 20, 200);
+test_systems::short_and_full! {
+    steps_that_are_too_long_are_made_in_parts => check_long_steps(&["dla", "lobatto3", "energy4", "implicit-midpoint"], 2, 20);
+    steps_that_are_too_long_are_made_in_parts_in_full => check_long_steps(&["dla", "dla4", "lobatto3", "energy4", "rk4-reduced", "implicit-midpoint"], 20, 200);
 }
 
 /// Steps of nearly a swing of the well, which these methods make in parts (`gauss8` does it in one); the energy is that of the motion, of which each step is made in
 /// `fine` short ones.
 fn check_long_steps(names: &[&str], steps: u64, fine: u64) {
     let short = request(steps * fine, 0.5 / fine as f64);
-    let right = run(&Subject::from(&system()), &Method::named("gauss8", None).unwrap(), &short, &mut ());
+    let right = run(&Subject::from(&system()), &Method::named("gauss8", None).unwrap(), &short);
     for name in names {
-        let record = run(&Subject::from(&system()), &in_parts(name), &request(steps, 0.5), &mut ());
+        let record = run(&Subject::from(&system()), &in_parts(name), &request(steps, 0.5));
         assert!(record.failure.is_none(), "{name}: {:?}", record.failure);
         let substeps = record.substeps.unwrap();
         assert_eq!((record.steps, substeps.divided, substeps.undivided), (steps, steps, None), "{name}");
@@ -48,15 +38,9 @@ fn check_long_steps(names: &[&str], steps: u64, fine: u64) {
     }
 }
 
-#[test]
-fn where_nothing_is_divided_no_bit_is_changed() {
-    check_undivided(families(), 10);
-}
-
-#[test]
-#[ignore = "slow"]
-fn where_nothing_is_divided_no_bit_is_changed_at_length() {
-    check_undivided(general(), 200);
+test_systems::short_and_full! {
+    where_nothing_is_divided_no_bit_is_changed => check_undivided(families(), 10);
+    where_nothing_is_divided_no_bit_is_changed_at_length => check_undivided(general(), 200);
 }
 
 /// Steps that resolve the motion are those of a run that may divide none, to the last bit.
@@ -64,10 +48,10 @@ fn check_undivided(methods: impl Iterator<Item = &'static MethodInfo>, steps: u6
     let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(steps, 0.01));
     let system = Subject::from(&system);
     for info in methods {
-        let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request, &mut ());
-        let record = run(&system, &in_parts(info.name), &request, &mut ());
+        let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request);
+        let record = run(&system, &in_parts(info.name), &request);
         if record.substeps.unwrap().divided == 0 {
-            assert_eq!(told(&record), told(&plain), "{}", info.name);
+            assert_eq!(bits(&Record { substeps: None, ..record }), bits(&plain), "{}", info.name);
         } else {
             // Of order one, and that which carries a mode along.
             assert!(["dla-alpha", "gni"].contains(&info.name), "{}: {:?}", info.name, record.substeps);
@@ -81,34 +65,9 @@ type Length = (u64, u64);
 const SHORT: Length = (6, 4);
 const LONG: Length = (40, 7);
 
-fn saved(
-    method: &Method,
-    (steps, every): Length,
-    step: f64,
-    from: Option<&Checkpoint>,
-    progress: &mut dyn Progress,
-) -> (Record, Vec<Checkpoint>) {
-    let mut all = Vec::new();
-    let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
-    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(every), save: &mut save };
-    let made = run_saved(&Subject::from(&system()), method, &request(steps, step), &mut saving, None, progress);
-    (made.unwrap(), all)
-}
-
-/// All but the time.
-fn bits(record: &Record) -> String {
-    format!("{:?}", Record { wall_seconds: 0.0, ..record.clone() })
-}
-
-#[test]
-fn every_checkpoint_leads_to_the_same_bits() {
-    check_checkpoints(&["dla", "lobatto3", "gauss8", "dop853"], SHORT);
-}
-
-#[test]
-#[ignore = "slow"]
-fn every_checkpoint_leads_to_the_same_bits_at_length() {
-    check_checkpoints(&["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"], LONG);
+test_systems::short_and_full! {
+    every_checkpoint_leads_to_the_same_bits => check_checkpoints(&["dla", "lobatto3", "gauss8", "dop853"], SHORT);
+    every_checkpoint_leads_to_the_same_bits_at_length => check_checkpoints(&["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"], LONG);
 }
 
 fn check_checkpoints(names: &[&str], length: Length) {
@@ -116,17 +75,8 @@ fn check_checkpoints(names: &[&str], length: Length) {
         let method = in_parts(name);
         // Some of whose steps are divided: those of order 8 may be longer.
         let step = if name == "gauss8" { 0.6 } else { 0.15 };
-        let (whole, checkpoints) = saved(&method, length, step, None, &mut ());
-        assert_eq!(
-            bits(&whole),
-            bits(&run(&Subject::from(&system()), &method, &request(length.0, step), &mut ())),
-            "{name}"
-        );
+        let whole = goes_on_to_the_same_bits(&Subject::from(&system()), &method, &request(length.0, step), length.1);
         assert!(name == "dop853" || whole.substeps.unwrap().divided > 0, "{name}");
-        assert_eq!(checkpoints.len() as u64, length.0.div_ceil(length.1), "{name}");
-        for checkpoint in &checkpoints {
-            assert_eq!(bits(&saved(&method, length, step, Some(checkpoint), &mut ()).0), bits(&whole), "{name}");
-        }
     }
 }
 
@@ -143,24 +93,22 @@ impl Progress for StopsAfter {
 
 #[test]
 fn a_run_that_is_stopped_within_a_step_goes_on_from_the_node_before() {
-    let method = in_parts("dla");
-    let whole = saved(&method, LONG, 0.15, None, &mut ()).0;
+    let (method, request, (steps, every)) = (in_parts("dla"), request(LONG.0, 0.15), LONG);
+    let system = system();
+    let system = Subject::from(&system);
+    let whole = run(&system, &method, &request);
     for asked in [1, 50, 333] {
-        let (part, checkpoints) = saved(&method, LONG, 0.15, None, &mut StopsAfter(std::cell::Cell::new(asked)));
-        assert!(part.interrupted && part.steps < 40 && part.failure.is_none(), "{asked}: {}", part.steps);
-        assert_eq!(bits(&saved(&method, LONG, 0.15, checkpoints.last(), &mut ()).0), bits(&whole), "{asked}");
+        let mut stops = StopsAfter(std::cell::Cell::new(asked));
+        let (part, checkpoints) = saved(&system, &method, &request, every, &mut stops);
+        assert!(part.interrupted && part.steps < steps && part.failure.is_none(), "{asked}: {}", part.steps);
+        let rest = resumed(&system, &method, &request, checkpoints.last().unwrap(), "a").unwrap();
+        assert_eq!(bits(&rest), bits(&whole), "{asked}");
     }
 }
 
-#[test]
-fn events_are_looked_for_in_every_part() {
-    check_events((2, 0.8), 40, 0.5);
-}
-
-#[test]
-#[ignore = "slow"]
-fn events_are_looked_for_in_every_part_in_full() {
-    check_events((4, 2.5), 500, 2.0);
+test_systems::short_and_full! {
+    events_are_looked_for_in_every_part => check_events((2, 0.8), 40, 0.5);
+    events_are_looked_for_in_every_part_in_full => check_events((4, 2.5), 500, 2.0);
 }
 
 /// A step in which the well is crossed many times: every crossing is found, as in short steps, `fine` for each; and where the first ends the
@@ -168,7 +116,7 @@ fn events_are_looked_for_in_every_part_in_full() {
 fn check_events((steps, step): (u64, f64), fine: u64, end: f64) {
     let crossing = [Event::new("y", |_, q, _| q[1])];
     let watched = |method: &Method, request: &Request, events: &[Event<'_>]| {
-        run_watched(&Subject::from(&system()), method, request, (events, 4), Some(1), &mut ())
+        watched(&Subject::from(&system()), method, request, events, 1)
     };
     let right = watched(&Method::named("gauss8", None).unwrap(), &request(steps * fine, step / fine as f64), &crossing);
     // A crossing takes less than half a second.
@@ -185,21 +133,20 @@ fn check_events((steps, step): (u64, f64), fine: u64, end: f64) {
     let ended = watched(&in_parts("dla4"), &request(steps, step), &last);
     assert!(ended.record.failure.is_none() && (ended.record.q[0] - end).abs() < 1e-12, "{:?}", ended.record);
     assert_eq!(ended.record.t.to_bits(), ended.crossings[0].t.to_bits());
-    let nodes = Trajectory::nodes(ended.trajectory.as_ref().unwrap());
-    assert_eq!(nodes.last().unwrap().t.to_bits(), ended.record.t.to_bits());
+    assert_eq!(ended.nodes.last().unwrap().t.to_bits(), ended.record.t.to_bits());
 }
 
 /// The bound is told with what was tried, and all is as before the step.
 #[test]
 fn a_step_that_cannot_be_divided_so_far_is_a_failure() {
     let few = Method::named("dla", None).unwrap().with_substeps(Substeps::new(1, 10));
-    let record = run(&Subject::from(&system()), &few, &request(20, 0.5), &mut ());
+    let record = run(&Subject::from(&system()), &few, &request(20, 0.5));
     let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
     assert_eq!((failure.step, failure.time, record.steps, failure.source), (1, 0.0, 0, why.source));
     assert_eq!((why.tried, why.time, why.part), (1, 0.0, 0.25));
     assert_eq!((record.q, record.energy.work), (request(20, 0.5).q, 0.0));
     // What no shorter step mends is not tried.
-    let refused = run(&Subject::from(&Particle::of(1.0)), &in_parts("rk4-reduced"), &request(20, 0.5), &mut ());
+    let refused = run(&Subject::from(&Particle::of(1.0)), &in_parts("rk4-reduced"), &request(20, 0.5));
     assert!(refused.refusal().is_some() || refused.failure.is_some());
     assert_eq!(refused.substeps.unwrap().undivided, None);
 }

@@ -1,11 +1,13 @@
 //! Trains whose forces or imposed velocities jump, and trains with a rotor: against the static systems and against known motions.
 
-use super::trains::{bits, end_of, request};
+use super::run;
+use super::trains::{end_of, request};
+use crate::common::goes_on_to_the_same_bits;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyState, AssemblySubject};
-use dla::{Checkpoint, Schedule, Subject};
-use harness::{Method, Record, Request, Saving, recommend, run_saved};
+use dla::{Schedule, Subject};
+use harness::{Method, Record, Request, Run};
 use lagrangian::linear::larger;
 use lagrangian::{Piecewise, System, With};
 use sleigh::effects::{Drag, Thrust, Torque};
@@ -36,7 +38,7 @@ fn trailers() -> Vec<Trailer> {
 fn made(train: &Train, name: &str, start: &AssemblyState) -> Record {
     let method = Method::named(name, None).unwrap();
     let request = request(&SCHEDULE, start, 10);
-    let run = harness::run(&AssemblySubject::from(&train.assembly), &method, &request, &mut ());
+    let run = run(&AssemblySubject::from(&train.assembly), &method, &request);
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
     run
 }
@@ -53,7 +55,7 @@ where
         let own = made(&alone, name, &start);
         let method = Method::named(name, None).unwrap();
         let request = Request { schedule: SCHEDULE, q: q.into(), v: v.into(), samples: 10 };
-        let fixed = harness::run(&Subject::from(system), &method, &request, &mut ());
+        let fixed = run(&Subject::from(system), &method, &request);
         assert!(fixed.failure.is_none(), "{name}: {:?}", fixed.failure);
         // A few units in the last place in each step.
         let rounding = 16.0 * 80.0 * f64::EPSILON * (1.0 + fixed.energy.work.abs());
@@ -68,15 +70,9 @@ where
     }
 }
 
-#[test]
-fn tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh() {
-    check_tables(&FEW);
-}
-
-#[test]
-#[ignore = "slow"]
-fn tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh_in_full() {
-    check_tables(&METHODS);
+test_systems::short_and_full! {
+    tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh => check_tables(&FEW);
+    tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh_in_full => check_tables(&METHODS);
 }
 
 fn check_tables(names: &[&str]) {
@@ -90,15 +86,9 @@ fn check_tables(names: &[&str]) {
     as_the_static_system(&With { body: both, effects: () }, names);
 }
 
-#[test]
-fn an_imposed_speed_that_jumps_pulls_the_train_along() {
-    check_imposed_speed(&FEW);
-}
-
-#[test]
-#[ignore = "slow"]
-fn an_imposed_speed_that_jumps_pulls_the_train_along_in_full() {
-    check_imposed_speed(&METHODS);
+test_systems::short_and_full! {
+    an_imposed_speed_that_jumps_pulls_the_train_along => check_imposed_speed(&FEW);
+    an_imposed_speed_that_jumps_pulls_the_train_along_in_full => check_imposed_speed(&METHODS);
 }
 
 /// A servo that jumps jerks the whole train: all blades of a straight one have its speed at once, and the impulse does the work.
@@ -182,19 +172,13 @@ fn methods_keep_their_orders_across_jumps_in_full() {
     // A step for a tolerance is looked for across the jumps too.
     let dla4 = Method::named("dla4", None).unwrap();
     let (system, place) = (AssemblySubject::from(&train.assembly), (&start.unwrapped()[..], start.v()));
-    let found = recommend(&system, &dla4, place, (4.0, 1e-5), &mut ()).unwrap();
+    let found = Run::of(&system, &dla4).recommended(place, (4.0, 1e-5)).unwrap();
     assert!(distance(&jerked_end("dla4", found.steps), &right) < 1e-5, "{found:?}");
 }
 
-#[test]
-fn a_run_across_jumps_goes_on_from_its_files() {
-    check_files(&["dla"], 20);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_run_across_jumps_goes_on_from_its_files_at_length() {
-    check_files(&["dla", "dla4"], 1);
+test_systems::short_and_full! {
+    a_run_across_jumps_goes_on_from_its_files => check_files(&["dla"], 20);
+    a_run_across_jumps_goes_on_from_its_files_at_length => check_files(&["dla", "dla4"], 1);
 }
 
 /// Saved before, at and after a jump, a run goes on with the same bits; so does one that has fewer steps than pieces fail at once.
@@ -203,35 +187,17 @@ fn check_files(names: &[&str], every: u64) {
     let system = AssemblySubject::from(&train.assembly);
     for &name in names {
         let method = Method::named(name, None).unwrap();
-        let request = request(&SCHEDULE, &start, 10);
-        let whole = harness::run(&system, &method, &request, &mut ());
-        let identity = Checkpoint::default();
-        let mut files = Vec::new();
-        let mut save = |made: &Checkpoint| files.push(made.clone());
-        let run = |saving: &mut Saving<'_>| run_saved(&system, &method, &request, saving, None, &mut ()).unwrap();
-        let mut saving = Saving { identity: &identity, from: None, every: Some(every), save: &mut save };
-        assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
-        assert_eq!(files.len() as u64, SCHEDULE.steps.div_ceil(every));
-        for file in &files {
-            let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
-            assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
-        }
+        goes_on_to_the_same_bits(&system, &method, &request(&SCHEDULE, &start, 10), every);
     }
     let few = Schedule { t0: 0.0, step: 2.0, steps: 2 };
-    let run = harness::run(&system, &Method::named("dla", None).unwrap(), &request(&few, &start, 1), &mut ());
+    let run = run(&system, &Method::named("dla", None).unwrap(), &request(&few, &start, 1));
     let said = run.failure.unwrap().to_string();
     assert!(run.steps == 0 && said.contains("fewer steps than pieces"), "{said}");
 }
 
-#[test]
-fn a_rotor_in_the_lead_is_a_flywheel() {
-    check_flywheel(&FEW);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_rotor_in_the_lead_is_a_flywheel_in_full() {
-    check_flywheel(&METHODS);
+test_systems::short_and_full! {
+    a_rotor_in_the_lead_is_a_flywheel => check_flywheel(&FEW);
+    a_rotor_in_the_lead_is_a_flywheel_in_full => check_flywheel(&METHODS);
 }
 
 /// The angle of the rotor is counted in space there, and against the body in the static system: one is a linear function of the other.
@@ -247,17 +213,17 @@ fn check_flywheel(names: &[&str]) {
         let (q, v) = (vec![x, y, heading, 0.0], vec![vx, vy, rate, 2.0]);
         let request = Request { schedule: SCHEDULE, q, v, samples: 10 };
         for &name in names {
-            let run = made(&alone, name, &start);
+            let own = made(&alone, name, &start);
             let method = Method::named(name, None).unwrap();
-            let fixed = harness::run(&Subject::from(&fixed), &method, &request, &mut ());
+            let fixed = run(&Subject::from(&fixed), &method, &request);
             let rounding = 16.0 * 80.0 * f64::EPSILON * (10.0 + fixed.energy.work.abs());
             for i in 0..3 {
-                assert_abs_diff_eq!(run.q[i], fixed.q[i], epsilon = rounding);
+                assert_abs_diff_eq!(own.q[i], fixed.q[i], epsilon = rounding);
             }
-            let [angle, relative] = alone.rotor(&run.q, &run.v).unwrap();
+            let [angle, relative] = alone.rotor(&own.q, &own.v).unwrap();
             assert_abs_diff_eq!(angle, fixed.q[3], epsilon = rounding);
             assert_abs_diff_eq!(relative, fixed.v[3], epsilon = rounding);
-            assert_abs_diff_eq!(run.energy.work, fixed.energy.work, epsilon = rounding);
+            assert_abs_diff_eq!(own.energy.work, fixed.energy.work, epsilon = rounding);
             assert_eq!(free, fixed.energy.work == 0.0, "{name}");
         }
     }
@@ -265,15 +231,9 @@ fn check_flywheel(names: &[&str]) {
     assert!(heavy.unwrap_err().to_string().contains("inertia of the rotor must be finite and positive"));
 }
 
-#[test]
-fn a_train_with_a_rotor() {
-    check_rotor(["dla"]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_train_with_a_rotor_in_full() {
-    check_rotor(METHODS);
+test_systems::short_and_full! {
+    a_train_with_a_rotor => check_rotor(["dla"]);
+    a_train_with_a_rotor_in_full => check_rotor(METHODS);
 }
 
 /// On a free bearing the rotor changes nothing and keeps its rate in space; a motor turns the train the other way, and their angular

@@ -1,13 +1,11 @@
 //! Runs of assemblies.
 
+use crate::common::{Watched, bits, goes_on_to_the_same_bits, watched as watched_on};
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyState, AssemblySubject, assembly_method};
-use dla::{Checkpoint, CheckpointError, Event, Mechanism, RecommendError, Schedule, StepError, Substeps, has_tangents};
-use harness::{
-    METHODS, Method, Progress, Record, Request, Saving, Watched, integrate_pieces, recommend, run_saved,
-    run_saved_watched, run_watched,
-};
+use dla::{Checkpoint, Event, Mechanism, RecommendError, Schedule, StepError, Substeps, Trajectory, has_tangents};
+use harness::{METHODS, Method, Progress, Record, Request, Run, Saving};
 use lagrangian::With;
 use sleigh::effects::{Drag, Thrust};
 use sleigh::{Sleigh, SleighState, TimeFunction};
@@ -40,35 +38,24 @@ pub(super) fn watched(
     every: u64,
 ) -> Watched {
     let request = request(schedule, start, schedule.steps.div_ceil(every));
-    run_watched(&AssemblySubject::from(&train.assembly), method, &request, (events, 4), Some(every), &mut ())
+    watched_on(&AssemblySubject::from(&train.assembly), method, &request, events, every)
 }
 
 /// The configuration at its end, nothing looking on.
 pub(super) fn end_of(train: &Train, method: &Method, schedule: &Schedule, start: &AssemblyState) -> Vec<f64> {
     let system = AssemblySubject::from(&train.assembly);
     let mut state = system.state(&start.unwrapped(), start.v());
-    integrate_pieces(&system, method, schedule, &mut state, &mut ()).unwrap();
+    Run::of(&system, method).moves(schedule, &mut state).unwrap();
     state.unwrapped()
-}
-
-/// All of a record but the time.
-pub(super) fn bits(record: &Record) -> String {
-    format!("{:?}", Record { wall_seconds: 0.0, ..record.clone() })
 }
 
 fn steps(steps: u64) -> Schedule {
     Schedule { steps, ..SCHEDULE }
 }
 
-#[test]
-fn a_run_of_a_train_is_measured() {
-    check_measured(20);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_run_of_a_train_is_measured_in_full() {
-    check_measured(200);
+test_systems::short_and_full! {
+    a_run_of_a_train_is_measured => check_measured(20);
+    a_run_of_a_train_is_measured_in_full => check_measured(200);
 }
 
 /// The work of drag and thrust is taken off the energy; what is left is of the order of the method.
@@ -83,7 +70,7 @@ fn check_measured(count: u64) {
     for run in [&second, &fourth] {
         let record = &run.record;
         let nodes = count as usize / 10 + 1;
-        let kept = run.trajectory.as_ref().unwrap().nodes().len();
+        let kept = run.nodes.len();
         assert_eq!((record.steps, kept, record.samples.len()), (count, nodes, nodes));
         assert_abs_diff_eq!(record.t, 0.02 * count as f64, epsilon = 1e-12);
         assert!(record.constraint_max < 1e-14 && record.leaf_max.unwrap() < 1e-14);
@@ -142,20 +129,15 @@ fn an_interrupted_run_keeps_what_is_made() {
     let method = Method::named("dla", None).unwrap();
     let long = Schedule { steps: 100_000_000, ..SCHEDULE };
     let (system, request) = (AssemblySubject::from(&train.assembly), request(&long, &start, 1));
-    let run = run_watched(&system, &method, &request, (&[], 1), Some(long.steps), &mut Impatient);
+    let (mut nodes, mut impatient) = (Trajectory::every(long.steps), Impatient);
+    let run = Run::of(&system, &method).observe(&mut nodes).progress(&mut impatient).go(&request);
     assert!(run.record.interrupted && run.record.steps > 0);
-    assert_abs_diff_eq!(run.trajectory.unwrap().nodes().last().unwrap().t, run.record.t);
+    assert_abs_diff_eq!(nodes.nodes().last().unwrap().t, run.record.t);
 }
 
-#[test]
-fn events_along_a_train() {
-    check_events([0.0513, 0.0911]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn events_along_a_train_in_full() {
-    check_events([0.513, 0.911]);
+test_systems::short_and_full! {
+    events_along_a_train => check_events([0.0513, 0.0911]);
+    events_along_a_train_in_full => check_events([0.513, 0.911]);
 }
 
 /// The state at a crossing is that of a shorter step of the method, and a terminal event ends the run there.
@@ -171,30 +153,22 @@ fn check_events(places: [f64; 2]) {
         assert_eq!(crossings.iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [0, 1]);
         for (crossing, value) in crossings.iter().zip(places) {
             assert!(crossing.rising && crossing.within < 1e-15);
-            assert_abs_diff_eq!(crossing.state.unwrapped()[0], value, epsilon = 1e-15);
-            let misses = train.assembly.misses(crossing.t, crossing.state.held().unwrap());
+            assert_abs_diff_eq!(crossing.q[0], value, epsilon = 1e-15);
+            let state = AssemblyState::new(&train.assembly, &crossing.q, &crossing.v);
+            let misses = train.assembly.misses(crossing.t, &state);
             assert!(misses.iter().all(|miss| *miss < 1e-14));
         }
-        assert_eq!(
-            (&run.record.q[..], &run.record.v[..]),
-            (&crossings[1].state.unwrapped()[..], crossings[1].state.v())
-        );
+        assert_eq!((&run.record.q, &run.record.v), (&crossings[1].q, &crossings[1].v));
         assert_abs_diff_eq!(run.record.t, crossings[1].t);
-        assert_eq!(run.trajectory.as_ref().unwrap().nodes().len(), 2);
+        assert_eq!(run.nodes.len(), 2);
         assert_eq!(run.record.steps, crossings[1].k + 1);
         assert!(run.record.failure.is_none() && !run.record.interrupted);
     }
 }
 
-#[test]
-fn a_saved_run_goes_on_as_if_it_had_not_stopped() {
-    check_saved(14, 5);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_saved_run_goes_on_as_if_it_had_not_stopped_in_full() {
-    check_saved(200, 64);
+test_systems::short_and_full! {
+    a_saved_run_goes_on_as_if_it_had_not_stopped => check_saved(14, 5);
+    a_saved_run_goes_on_as_if_it_had_not_stopped_in_full => check_saved(200, 64);
 }
 
 /// In parts, and from the file of any of them, the numbers are the same to the last bit.
@@ -204,37 +178,13 @@ fn check_saved(count: u64, every: u64) {
     for name in ["dla", "dla4"] {
         let method = Method::named(name, None).unwrap();
         let (system, request) = (AssemblySubject::from(&train.assembly), request(&schedule, &start, 10));
-        let whole = harness::run(&system, &method, &request, &mut ());
-        let identity = Checkpoint::of([("method", name.to_owned())]);
-        let mut files = Vec::new();
-        let mut save = |made: &Checkpoint| files.push(made.to_text());
-        let mut saving = Saving { identity: &identity, from: None, every: Some(every), save: &mut save };
-        let run = |saving: &mut Saving<'_>| run_saved(&system, &method, &request, saving, None, &mut ());
-        let parts = run(&mut saving).unwrap();
-        assert_eq!(bits(&parts), bits(&whole));
-        assert_eq!(files.len() as u64, count.div_ceil(every));
-        for file in &files {
-            let read = Checkpoint::from_text(file).unwrap();
-            let mut saving = Saving { identity: &identity, from: Some(&read), every: None, save: &mut |_| {} };
-            assert_eq!(bits(&run(&mut saving).unwrap()), bits(&whole));
-        }
-        // A positive control: another run does not take it.
-        let other = Checkpoint::of([("method", "another".to_owned())]);
-        let read = Checkpoint::from_text(&files[0]).unwrap();
-        let mut saving = Saving { identity: &other, from: Some(&read), every: None, save: &mut |_| {} };
-        assert!(matches!(run(&mut saving), Err(CheckpointError::Other { .. })));
+        goes_on_to_the_same_bits(&system, &method, &request, every);
     }
 }
 
-#[test]
-fn a_step_for_a_tolerance() {
-    check_recommended(0.4, 1e-5);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_step_for_a_tolerance_in_full() {
-    check_recommended(4.0, 1e-4);
+test_systems::short_and_full! {
+    a_step_for_a_tolerance => check_recommended(0.4, 1e-5);
+    a_step_for_a_tolerance_in_full => check_recommended(4.0, 1e-4);
 }
 
 /// The recommended step meets its tolerance against a run of high order, and one of a quarter of the steps does not.
@@ -244,7 +194,7 @@ fn check_recommended(duration: f64, tolerance: f64) {
     let dla = Method::named("dla", None).unwrap();
     let system = AssemblySubject::from(&train.assembly);
     let (q, v) = (start.unwrapped(), start.v());
-    let of = |method: &Method| recommend(&system, method, (&q, v), (duration, tolerance), &mut ());
+    let of = |method: &Method| Run::of(&system, method).recommended((&q, v), (duration, tolerance));
     let found = of(&dla).unwrap();
     let end = |method: &Method, steps: u64| {
         end_of(&train, method, &Schedule { t0: 0.0, step: duration / steps as f64, steps }, &start)
@@ -317,26 +267,17 @@ fn long_steps_of_trains_are_made_in_parts_at_length() {
     let right = short_steps(0.005, 1200);
     for name in ["dla", "dla4"] {
         let (method, run) = in_parts(name, &long, &right);
-        let mut files = Vec::new();
-        let mut save = |made: &Checkpoint| files.push(made.clone());
-        let identity = Checkpoint::default();
-        let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut save };
         let (system, request) = (AssemblySubject::from(&train.assembly), request(&long, &start, long.steps));
-        let whole = run_saved(&system, &method, &request, &mut saving, None, &mut ()).unwrap();
-        assert_eq!(bits(&whole), bits(&run), "{name}");
-        for file in &files {
-            let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
-            let again = run_saved(&system, &method, &request, &mut saving, None, &mut ());
-            assert_eq!(bits(&again.unwrap()), bits(&run), "{name}");
-        }
+        assert_eq!(bits(&goes_on_to_the_same_bits(&system, &method, &request, 2)), bits(&run), "{name}");
 
         let events = [Event::new("x", |_, q, _| q[0] - 1.0).terminal()];
         let ended = watched((&train, &start), &method, &long, &events, 1);
         assert_eq!((ended.crossings.len(), ended.record.t), (1, ended.crossings[0].t), "{name}");
         assert_abs_diff_eq!(ended.record.q[0], 1.0, epsilon = 1e-9);
         // Events are saved as those of other systems are.
+        let identity = Checkpoint::default();
         let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut |_| () };
-        let saved = run_saved_watched(&system, &method, &request, (&events, 4), &mut saving, None, &mut ()).unwrap();
+        let saved = Run::of(&system, &method).events(&events, 4).saved(&request, &mut saving, None).unwrap();
         assert_eq!((saved.crossings.len(), bits(&saved.record)), (1, bits(&ended.record)), "{name}");
     }
 }

@@ -33,15 +33,9 @@ fn check_intervals(found: &Lyapunov, known: [f64; 5]) {
 /// Steps of a run: their length, those that are not counted, and those that are.
 type Steps = (f64, u64, u64);
 
-#[test]
-fn stable_straight_motion_is_steady() {
-    check_stable(&[(0.2, 30, 300), (0.2, 0, 500)]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn stable_straight_motion_is_steady_in_full() {
-    check_stable(&[(0.1, 100, 1000), (0.1, 1000, 10_000), (0.1, 0, 1000)]);
+test_systems::short_and_full! {
+    stable_straight_motion_is_steady => check_stable(&[(0.2, 30, 300), (0.2, 0, 500)]);
+    stable_straight_motion_is_steady_in_full => check_stable(&[(0.1, 100, 1000), (0.1, 1000, 10_000), (0.1, 0, 1000)]);
 }
 
 /// About straight motion at 1 m/s the spin has the eigenvalue `-c u`; neighbours with another heading or speed part company
@@ -67,15 +61,9 @@ fn a_long_run_keeps_the_exponent_of_a_stable_motion() {
     assert_eq!(found.verdict, MotionVerdict::Steady { unstable: false });
 }
 
-#[test]
-fn driven_straight_motion_is_steady() {
-    check_driven((1.0, 200, 100));
-}
-
-#[test]
-#[ignore = "slow"]
-fn driven_straight_motion_is_steady_in_full() {
-    check_driven((0.1, 4000, 10_000));
+test_systems::short_and_full! {
+    driven_straight_motion_is_steady => check_driven((1.0, 200, 100));
+    driven_straight_motion_is_steady_in_full => check_driven((0.1, 4000, 10_000));
 }
 
 /// A thrust of 0.08 N against drag of 0.08 kg/s is 1 m/s: the speed has `-0.08`, the spin `-c u - c_omega/J = -0.4 - 0.1`.
@@ -91,15 +79,9 @@ fn check_driven(steps: Steps) {
     }
 }
 
-#[test]
-fn unstable_straight_motion_is_steady_too() {
-    check_unstable(&[(0.1, 40, 400)]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn unstable_straight_motion_is_steady_too_in_full() {
-    check_unstable(&[(0.05, 80, 800), (0.05, 200, 2000), (0.1, 1000, 10_000)]);
+test_systems::short_and_full! {
+    unstable_straight_motion_is_steady_too => check_unstable(&[(0.1, 40, 400)]);
+    unstable_straight_motion_is_steady_too_in_full => check_unstable(&[(0.05, 80, 800), (0.05, 200, 2000), (0.1, 1000, 10_000)]);
 }
 
 /// Backward it is unstable: an exponent is positive, and the motion as regular as can be.
@@ -197,15 +179,9 @@ fn a_limit_cycle_is_periodic() {
     assert!(!matches!(early.verdict, MotionVerdict::Periodic { .. }), "{}", early.verdict);
 }
 
-#[test]
-fn a_periodic_motion_is_periodic() {
-    to_and_fro(&[1.0], (0.15, 20, 400));
-}
-
-#[test]
-#[ignore = "slow"]
-fn an_unstable_periodic_motion_is_periodic() {
-    assert!(to_and_fro(&[0.5, 1.0, 2.0, 3.0], (0.05, 400, 4000)) > 0);
+test_systems::short_and_full! {
+    a_periodic_motion_is_periodic => to_and_fro(&[1.0], (0.15, 20, 400));
+    an_unstable_periodic_motion_is_periodic => assert!(to_and_fro(&[0.5, 1.0, 2.0, 3.0], (0.05, 400, 4000)) > 0);
 }
 
 /// Straight to and fro through the middle of a well, with the blade along it: unstable for some energies, and never chaotic. How many are
@@ -354,15 +330,9 @@ impl Reduced<3, 1> for Wrong {
     }
 }
 
-#[test]
-fn sums_that_differ_are_a_failure() {
-    check_sums(200);
-}
-
-#[test]
-#[ignore = "slow"]
-fn sums_that_differ_are_a_failure_in_full() {
-    check_sums(1000);
+test_systems::short_and_full! {
+    sums_that_differ_are_a_failure => check_sums(200);
+    sums_that_differ_are_a_failure_in_full => check_sums(1000);
 }
 
 /// The steps of `dla` know nothing of the equations by hand, so that the two sums find out what is wrong with these.

@@ -1,8 +1,9 @@
 //! Events of a method of the table that has steps of its own.
 
+use crate::common::{Watched, watched};
 use approx::assert_abs_diff_eq;
 use dla::{Event, Schedule, Subject};
-use harness::{EVENT_SAMPLES, Method, Request, Watched, run_watched};
+use harness::{Method, Request};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use std::f64::consts::{PI, TAU};
 
@@ -42,7 +43,7 @@ fn run(spring: Spring, (step, steps): (f64, u64), events: &[Event<'_>]) -> Watch
     let method = Method::named("dop853", None).unwrap();
     let schedule = Schedule { t0: 0.0, step, steps };
     let request = Request { schedule, q: vec![0.0; 2], v: vec![1.0, 0.0], samples: 1 };
-    run_watched(&Subject::from(&spring), &method, &request, (events, EVENT_SAMPLES), Some(1), &mut ())
+    watched(&Subject::from(&spring), &method, &request, events, 1)
 }
 
 const FREE: Spring = Spring { jumps: false, push: 0.0 };
@@ -82,8 +83,7 @@ fn a_long_step_ends_at_an_event() {
     let watched = run(FREE, (5.0, 12), &[half(), third]);
     let end = 7.0 * PI / 6.0;
     assert_times(&watched, &[PI / 6.0, 5.0 * PI / 6.0, end]);
-    let trajectory = watched.trajectory.unwrap();
-    let nodes = trajectory.nodes();
+    let nodes = &watched.nodes;
     assert_eq!((nodes.len(), nodes[1].t.to_bits(), watched.record.steps), (2, watched.record.t.to_bits(), 1));
     assert_abs_diff_eq!(watched.record.t, end, epsilon = 1e-9);
     assert_abs_diff_eq!(nodes[1].q[0], -0.5, epsilon = 1e-15);

@@ -1,5 +1,6 @@
 //! The work that is taken off the energy of an assembly.
 
+use super::run;
 use super::trains::{made, request, watched};
 use assembly::parts::{Trailer, Train};
 use assembly::{Assembly, AssemblyState, AssemblySubject};
@@ -48,15 +49,9 @@ fn measured((train, start): &(Train, AssemblyState), name: &str, schedule: &Sche
     run
 }
 
-#[test]
-fn a_free_train_has_no_work() {
-    check_free(0.3);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_free_train_has_no_work_in_full() {
-    check_free(20.0);
+test_systems::short_and_full! {
+    a_free_train_has_no_work => check_free(0.3);
+    a_free_train_has_no_work_in_full => check_free(20.0);
 }
 
 /// Without forces nothing is taken off.
@@ -67,15 +62,9 @@ fn check_free(duration: f64) {
     }
 }
 
-#[test]
-fn the_work_of_a_step_that_an_event_ends() {
-    check_ended_step(0.156_789);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_work_of_a_step_that_an_event_ends_in_full() {
-    check_ended_step(4.567_89);
+test_systems::short_and_full! {
+    the_work_of_a_step_that_an_event_ends => check_ended_step(0.156_789);
+    the_work_of_a_step_that_an_event_ends_in_full => check_ended_step(4.567_89);
 }
 
 /// Of the step that an event at a time (s) ends only the part before it counts.
@@ -90,15 +79,9 @@ fn check_ended_step(time: f64) {
     assert!(run.record.energy.max_error < 1e-10, "{:e}", run.record.energy.max_error);
 }
 
-#[test]
-fn one_sleigh_is_measured_as_the_static_sleigh() {
-    check_one_sleigh(&["dla"], 2.0);
-}
-
-#[test]
-#[ignore = "slow"]
-fn one_sleigh_is_measured_as_the_static_sleigh_at_length() {
-    check_one_sleigh(&["dla", "dla4"], 20.0);
+test_systems::short_and_full! {
+    one_sleigh_is_measured_as_the_static_sleigh => check_one_sleigh(&["dla"], 2.0);
+    one_sleigh_is_measured_as_the_static_sleigh_at_length => check_one_sleigh(&["dla", "dla4"], 20.0);
 }
 
 /// An assembly of one sleigh is measured as the sleigh is, for so long (s).
@@ -115,8 +98,8 @@ fn check_one_sleigh(names: &[&str], duration: f64) {
         for name in names {
             let method = Method::named(name, None).unwrap();
             let request = request(&schedule, &start, 2);
-            let own = harness::run(&AssemblySubject::from(&alone), &method, &request, &mut ());
-            let fixed = harness::run(&Subject::from(system), &method, &request, &mut ());
+            let own = run(&AssemblySubject::from(&alone), &method, &request);
+            let fixed = run(&Subject::from(system), &method, &request);
             let (own, fixed) = (own.energy, fixed.energy);
             println!("{name} {:e} {:e} {:e} {:e}", own.work, fixed.work, own.max_error, fixed.max_error);
             assert_eq!(powered, fixed.work != 0.0);

@@ -38,15 +38,9 @@ fn on_circles(methods: &Methods, steps: u64) {
     }
 }
 
-#[test]
-fn it_holds_for_long() {
-    on_circles(&families(), 150);
-}
-
-#[test]
-#[ignore = "slow"]
-fn it_holds_for_long_at_length() {
-    on_circles(&all_methods(), 100_000);
+test_systems::short_and_full! {
+    it_holds_for_long => on_circles(&families(), 150);
+    it_holds_for_long_at_length => on_circles(&all_methods(), 100_000);
 }
 
 /// On every row; on how many of them the same measure sees the slip of `rk4`.
@@ -102,14 +96,8 @@ fn without_growth(methods: &[&str], steps: u64) {
     assert!(slips > 1e-9, "the control slips by {slips:e} only");
 }
 
-/// A tenth is half a turn.
-#[test]
-fn it_holds_for_a_million_steps() {
-    without_growth(&["dla", "rk4-reduced"], 630);
-}
-
-#[test]
-#[ignore = "slow"]
-fn it_holds_for_a_million_steps_at_length() {
-    without_growth(&["dla", "dla-trapezoid", "rk4-projected", "rk4-reduced"], 1_000_000);
+test_systems::short_and_full! {
+    /// A tenth is half a turn.
+    it_holds_for_a_million_steps => without_growth(&["dla", "rk4-reduced"], 630);
+    it_holds_for_a_million_steps_at_length => without_growth(&["dla", "dla-trapezoid", "rk4-projected", "rk4-reduced"], 1_000_000);
 }

@@ -96,13 +96,7 @@ fn bounded(steps: [u64; 2]) {
     assert!((long - short).abs() < 1e-12, "the error of a motion that has died out still grows: {short:e}, {long:e}");
 }
 
-#[test]
-fn the_midpoint_rule_bounds_it_on_the_free_sleigh() {
-    bounded([500, 2_500]);
-}
-
-#[test]
-#[ignore = "slow"]
-fn the_midpoint_rule_bounds_it_on_the_free_sleigh_in_full() {
-    bounded([1_000, 20_000]);
+test_systems::short_and_full! {
+    the_midpoint_rule_bounds_it_on_the_free_sleigh => bounded([500, 2_500]);
+    the_midpoint_rule_bounds_it_on_the_free_sleigh_in_full => bounded([1_000, 20_000]);
 }

@@ -143,13 +143,7 @@ fn loses(periods: usize, end: f64, rate: f64) {
     }
 }
 
-#[test]
-fn a_plain_symmetric_scheme_loses_energy() {
-    loses(1_000, 0.99, -7.784e-5);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_plain_symmetric_scheme_loses_energy_at_length() {
-    loses(10_000, 0.585, -8.4e-6);
+test_systems::short_and_full! {
+    a_plain_symmetric_scheme_loses_energy => loses(1_000, 0.99, -7.784e-5);
+    a_plain_symmetric_scheme_loses_energy_at_length => loses(10_000, 0.585, -8.4e-6);
 }

@@ -99,13 +99,7 @@ fn stages(rows: &Rows, fine: f64) {
     }
 }
 
-#[test]
-fn more_stages_are_more_accurate() {
-    stages(&kinds(), 6.0);
-}
-
-#[test]
-#[ignore = "slow"]
-fn more_stages_are_more_accurate_in_full() {
-    stages(&table(), 100.0);
+test_systems::short_and_full! {
+    more_stages_are_more_accurate => stages(&kinds(), 6.0);
+    more_stages_are_more_accurate_in_full => stages(&table(), 100.0);
 }

@@ -80,13 +80,7 @@ fn not_kept(steps: u64) {
     assert!(projected > 1e-10, "a method that does not promise it: {projected:e}");
 }
 
-#[test]
-fn other_integrals_are_not_kept() {
-    not_kept(100);
-}
-
-#[test]
-#[ignore = "slow"]
-fn other_integrals_are_not_kept_in_full() {
-    not_kept(1000);
+test_systems::short_and_full! {
+    other_integrals_are_not_kept => not_kept(100);
+    other_integrals_are_not_kept_in_full => not_kept(1000);
 }

@@ -168,13 +168,7 @@ fn one_sided(rows: &Rows, duration: Option<f64>, fine: f64, steps: u64) {
     }
 }
 
-#[test]
-fn a_one_sided_rule_is_of_order_one() {
-    one_sided(&kinds(), Some(1.0), 10.0, 50);
-}
-
-#[test]
-#[ignore = "slow"]
-fn a_one_sided_rule_is_of_order_one_in_full() {
-    one_sided(&table(), None, 100.0, 1600);
+test_systems::short_and_full! {
+    a_one_sided_rule_is_of_order_one => one_sided(&kinds(), Some(1.0), 10.0, 50);
+    a_one_sided_rule_is_of_order_one_in_full => one_sided(&table(), None, 100.0, 1600);
 }

@@ -54,15 +54,9 @@ fn in_thirty_digits(methods: &[&str], steps: u64) {
     }
 }
 
-#[test]
-fn sleighs_in_thirty_digits() {
-    in_thirty_digits(&["lobatto5", "gauss8"], 100);
-}
-
-#[test]
-#[ignore = "slow"]
-fn sleighs_in_thirty_digits_in_full() {
-    in_thirty_digits(&HIGH, 400);
+test_systems::short_and_full! {
+    sleighs_in_thirty_digits => in_thirty_digits(&["lobatto5", "gauss8"], 100);
+    sleighs_in_thirty_digits_in_full => in_thirty_digits(&HIGH, 400);
 }
 
 /// Ends on the closed form, by methods of high order; and the error of `dla` is the one published with it, in runs of `first` steps and of
@@ -96,15 +90,9 @@ fn on_closed_forms(by: (&[&str], u64)) {
     on_the_closed_form(&edge, by, None, 0);
 }
 
-#[test]
-fn closed_forms() {
-    on_closed_forms((&["dla8", "lobatto5", "gauss8"], 40));
-}
-
-#[test]
-#[ignore = "slow"]
-fn closed_forms_in_full() {
-    on_closed_forms((&HIGH, 400));
+test_systems::short_and_full! {
+    closed_forms => on_closed_forms((&["dla8", "lobatto5", "gauss8"], 40));
+    closed_forms_in_full => on_closed_forms((&HIGH, 400));
 }
 
 /// The angular velocity of the Suslov problem is known in closed form, its attitude is not.
@@ -127,13 +115,7 @@ fn suslov_by(methods: &[&str], steps: u64) {
     }
 }
 
-#[test]
-fn suslov() {
-    suslov_by(&["dla8", "gauss8", "energy8"], 40);
-}
-
-#[test]
-#[ignore = "slow"]
-fn suslov_in_full() {
-    suslov_by(&HIGH, 400);
+test_systems::short_and_full! {
+    suslov => suslov_by(&["dla8", "gauss8", "energy8"], 40);
+    suslov_in_full => suslov_by(&HIGH, 400);
 }

@@ -4,11 +4,11 @@
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::table::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
-use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, Scalar, System, With};
+use lagrangian::{Motion, Piecewise, Reduced, Scalar, System, With};
 use sleigh::Sleigh;
 use test_systems::{
     ChaplyginBall, ContactOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer, RollingDisk,
-    Snakeboard, Suslov,
+    Snakeboard, Suslov, shape,
 };
 
 /// A configuration and a velocity.
@@ -27,46 +27,12 @@ pub trait Known<const N: usize> {
     }
 }
 
-macro_rules! shape {
+macro_rules! known {
     ($(#[$text:meta])* $name:ident<$n:literal, $m:literal>: $($model:ident)*; $($plain:ident: $type:ty),*) => {
-        $(#[$text])*
-        #[derive(Debug, Clone, Copy)]
-        pub enum $name { $($model($model),)* $($plain($type),)* }
-
-        $(impl From<$model> for $name {
-            fn from(system: $model) -> Self { Self::$model(system) }
-        })*
-        $(impl From<$type> for $name {
-            fn from(system: $type) -> Self { Self::$plain(system) }
-        })*
-
-        impl System<$n, $m> for $name {
-            #[inline(never)]
-            fn lagrangian<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> S {
-                match self { $(Self::$model(x) => x.lagrangian(t, q, v),)* $(Self::$plain(x) => x.lagrangian(t, q, v),)* }
-            }
-            #[inline(never)]
-            fn constraint<S: Scalar>(&self, t: S, q: &[S; $n]) -> Constraint<S, $n, $m> {
-                match self { $(Self::$model(x) => x.constraint(t, q),)* $(Self::$plain(x) => x.constraint(t, q),)* }
-            }
-            #[inline(never)]
-            fn force<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> Option<[S; $n]> {
-                match self { $(Self::$model(x) => x.force(t, q, v),)* $(Self::$plain(x) => x.force(t, q, v),)* }
-            }
-            #[inline(never)]
-            fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<AdmissibleBasis<S, $n, $m>> {
-                match self {
-                    $(Self::$model(x) => x.admissible_basis(t, q),)*
-                    $(Self::$plain(x) => x.admissible_basis(t, q),)*
-                }
-            }
-            #[inline(never)]
-            fn holonomic<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<[Option<S>; $m]> {
-                match self { $(Self::$model(x) => x.holonomic(t, q),)* $(Self::$plain(x) => x.holonomic(t, q),)* }
-            }
-            fn angles(&self) -> [bool; $n] {
-                match self { $(Self::$model(x) => x.angles(),)* $(Self::$plain(x) => x.angles(),)* }
-            }
+        shape! {
+            $(#[$text])*
+            #[derive(Debug, Copy)]
+            pub $name<$n, $m> { $($model: $model,)* $($plain: $type,)* }
             fn reduced(&self) -> impl Reduced<$n, $m> {
                 self
             }
@@ -112,29 +78,29 @@ macro_rules! shape {
     };
 }
 
-shape! {
+known! {
     /// Three coordinates, one constraint.
     Three<3, 1>: Particle KnifeEdge ContactOscillator;
     Sleigh: Sleigh, InField: InField, Thrust: With<Sleigh, Thrust>, Pushed: With<InField, Thrust>, Forces: With<Sleigh, Forces>, Moving: Moving,
     Turntable: Turntable, Magnetic: Magnetic
 }
 
-shape! {
+known! {
     /// Four coordinates, two constraints.
     Four<4, 2>: RollingDisk RollerRacer Suslov;
 }
 
-shape! {
+known! {
     /// Five coordinates, two constraints.
     Five<5, 2>: Snakeboard;
 }
 
-shape! {
+known! {
     /// Six coordinates, three constraints.
     Six<6, 3>: ChaplyginBall;
 }
 
-shape! {
+known! {
     /// Seven coordinates, one constraint.
     Seven<7, 1>: QuarticOscillator;
 }

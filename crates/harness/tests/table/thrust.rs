@@ -50,14 +50,8 @@ fn no_drift(steps: u64, least: f64) {
     assert!(largest < 1e-3 && (slope / -5.6e-9 - 1.0).abs() < 0.1, "rk4-reduced: {largest:e}, slope {slope:e}");
 }
 
-#[test]
-fn the_integral_does_not_drift() {
-    no_drift(2_000, 1e-6);
-}
-
-/// For `1e5 s`.
-#[test]
-#[ignore = "slow"]
-fn the_integral_does_not_drift_at_length() {
-    no_drift(2_000_000, 1e-11);
+test_systems::short_and_full! {
+    the_integral_does_not_drift => no_drift(2_000, 1e-6);
+    /// For `1e5 s`.
+    the_integral_does_not_drift_at_length => no_drift(2_000_000, 1e-11);
 }

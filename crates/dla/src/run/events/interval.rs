@@ -1,8 +1,7 @@
 use super::finer::Between;
 use super::zeros::{Zeros, in_order, zeros_by};
 use super::{Crossing, Event, Zero};
-use crate::run::again::again;
-use crate::{AnyState, Mechanism, Method, Report};
+use crate::{AnyState, Mechanism, Method, Report, again};
 
 /// A step, or one that a method makes of its own within it, to be made again in parts.
 pub(super) struct EventInterval<'a> {

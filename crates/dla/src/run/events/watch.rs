@@ -126,18 +126,8 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
             }
             self.before = Some((t0, start));
         }
-        self.remember(node);
+        node.keep_in(&mut self.before);
         ControlFlow::Continue(())
-    }
-
-    fn remember(&mut self, node: &View<'_>) {
-        match &mut self.before {
-            Some((t, state)) => {
-                *t = node.t;
-                state.clone_from(node.state);
-            }
-            before => *before = Some((node.t, node.state.clone())),
-        }
     }
 
     /// Looks for events in each of the steps that the method makes of its own on the way to a node, until one ends the run.
@@ -193,7 +183,7 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
 
 impl<Inner: Observer> Observer for Watch<'_, Inner> {
     fn start(&mut self, node: &View<'_>) {
-        self.remember(node);
+        node.keep_in(&mut self.before);
         self.at_start = true;
         self.memory.clear();
         self.inner.start(node);
@@ -211,7 +201,7 @@ impl<Inner: Observer> Observer for Watch<'_, Inner> {
                 }
             }
         }
-        self.remember(node);
+        node.keep_in(&mut self.before);
         self.memory.clear();
         self.inner.resume(node);
     }

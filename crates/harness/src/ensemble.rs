@@ -1,8 +1,41 @@
-use crate::analysis::{STACK, prepare_threads};
-use dla::Stop;
+//! Ensembles: many starts of a system, each summed up in a few numbers, in order and on all threads.
+
+use crate::{Method, Run};
+use dla::{Mechanism, Observer, Report, RunError, Schedule, Stop, View};
+use lagrangian::linear::larger;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, Once, PoisonError};
+
+/// Stack of a thread (bytes; taken as it is used). Kernels in registers are one function each; in a build without any optimisation every
+/// number in it has a place of its own, some megabytes in all.
+const STACK: usize = 32 << 20;
+
+/// Makes the pool of threads that everything shares, if there is none yet: as many as the machine has cores, or as `RAYON_NUM_THREADS` asks
+/// for, if these are fewer.
+pub fn prepare_threads() {
+    static POOL: Once = Once::new();
+    POOL.call_once(|| {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|asked| asked.trim().parse().ok());
+        let threads = asked.filter(|asked| *asked > 0).map_or(cores, |asked: usize| asked.min(cores));
+        // Where there is a pool already, it stays.
+        rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build_global().unwrap_or_default();
+    });
+}
+
+/// `each(0)` to `each(count - 1)`, in that order, computed on all threads.
+///
+/// If the caller ends this thread's work, all other threads end too. Each item is computed by itself, so that the number of threads
+/// (`RAYON_NUM_THREADS`) changes nothing but the time.
+pub fn in_parallel<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    if rayon::current_thread_index().is_none() {
+        prepare_threads();
+    }
+    let stop = Stop::of_thread();
+    (0..count).into_par_iter().map(|i| stop.within(|| each(i))).collect()
+}
 
 /// Maximum number of members ahead of the next one to be handed on, whose results wait in memory.
 const AHEAD: u64 = 4096;
@@ -150,5 +183,91 @@ struct Leaving<'a, T>(&'a Line<T>);
 impl<T> Drop for Leaving<'_, T> {
     fn drop(&mut self) {
         self.0.leave();
+    }
+}
+
+/// A trajectory in a few numbers: its end, and extremes over the observed nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Time of the end (s).
+    pub t: f64,
+    /// The quantities at the end.
+    pub end: Vec<f64>,
+    /// The least of each.
+    pub low: Vec<f64>,
+    /// The largest of each.
+    pub high: Vec<f64>,
+    /// Energy at the start and at the end (J).
+    pub energy: [f64; 2],
+    /// `max |E - E0|` (J): an error, if nothing does work.
+    pub energy_deviation: f64,
+    /// `max |A(q) v + b|`.
+    pub constraint: f64,
+}
+
+/// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
+type Of<'a> = &'a dyn Fn(f64, &[f64], &[f64]) -> Vec<f64>;
+
+/// The summary of one trajectory by any method, over every `every`-th of its nodes and the last. If it fails, the summary of its valid
+/// part, with the failure.
+pub fn summarise(
+    system: &dyn Mechanism,
+    method: &Method,
+    (q, v): (&[f64], &[f64]),
+    (schedule, every): (&Schedule, u64),
+    of: Of<'_>,
+) -> (Option<Summary>, Option<RunError>) {
+    let mut looking = Looking { every: every.max(1), of, seen: None, last: None };
+    let outcome = Run::of(system, method).observe(&mut looking).moves(schedule, &mut system.state(q, v));
+    (looking.seen, outcome.err())
+}
+
+/// The observer of one trajectory.
+struct Looking<'a> {
+    every: u64,
+    of: Of<'a>,
+    seen: Option<Summary>,
+    last: Option<u64>,
+}
+
+impl Looking<'_> {
+    fn see(&mut self, node: &View<'_>) {
+        if self.last.replace(node.k) == Some(node.k) {
+            return;
+        }
+        let (t, energy) = (node.t, node.energy());
+        let end = (self.of)(t, &node.state.unwrapped(), node.state.v());
+        let seen = self.seen.get_or_insert_with(|| Summary {
+            t,
+            end: Vec::new(),
+            low: end.clone(),
+            high: end.clone(),
+            energy: [energy; 2],
+            energy_deviation: 0.0,
+            constraint: 0.0,
+        });
+        for (k, value) in end.iter().enumerate() {
+            (seen.low[k], seen.high[k]) = (seen.low[k].min(*value), seen.high[k].max(*value));
+        }
+        (seen.t, seen.end, seen.energy[1]) = (t, end, energy);
+        seen.energy_deviation = larger(seen.energy_deviation, (energy - seen.energy[0]).abs());
+        seen.constraint = larger(seen.constraint, node.constraint());
+    }
+}
+
+impl Observer for Looking<'_> {
+    fn start(&mut self, node: &View<'_>) {
+        self.see(node);
+    }
+
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
+        if node.k.is_multiple_of(self.every) {
+            self.see(node);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn end(&mut self, node: &View<'_>) {
+        self.see(node);
     }
 }

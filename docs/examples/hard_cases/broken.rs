@@ -1,7 +1,7 @@
 //! A stepper of the free sleigh, with what can be broken in one.
 
 use dla::Schedule;
-use harness::stability::{Recorded, Seen, VALUES};
+use harness::stability::{Recorded, Seen};
 
 pub(crate) fn schedule(step: f64, duration: f64) -> Schedule {
     Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
@@ -10,29 +10,16 @@ pub(crate) fn schedule(step: f64, duration: f64) -> Schedule {
 /// What is broken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Broken {
-    Nothing,
     /// Newton's method stops at this correction of the spin (rad/s), whatever its size.
     AbsoluteTolerance(f64),
-    /// Any solution of the equations is taken.
-    AnyRoot,
-    /// The spin is had from a velocity of the size of the speed.
-    Coordinates,
     /// The velocity at the start of the step, for all of it.
     OneSided,
     /// Places are sums without compensation.
     PlainSums,
     /// The heading is not kept within a turn.
     Unwrapped,
-    /// Headings are had from the velocity.
-    ByVelocity,
     /// A mass that is none but one.
     UnitMass,
-    /// The square of the speed, which overflows.
-    Squares,
-    /// The velocity is carried along as it is, and not projected.
-    Unprojected,
-    /// The mass matrix is inverted, and the constraint met after that: the inertia is `J - m a^2`.
-    MassMatrix,
     /// What rounding leaves of a velocity across the blade is stopped as if all mass were there, and the torque of that
     /// divided by the inertia.
     Across,
@@ -51,14 +38,7 @@ pub(crate) const BODY: Body = [1.0, 1.0, 0.5];
 pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedule) -> Recorded {
     use Broken as B;
     let [m, inertia, a] = body;
-    let (h, pivot) = (schedule.step, inertia + m * a * a);
-    let gain = if broken == B::MassMatrix {
-        // (M^-1 A')_theta / (A M^-1 A'), both of which grow as 1/I.
-        let inertia = pivot - m * a * a;
-        (a / inertia) / (1.0 / m + a * a / inertia)
-    } else {
-        m * a / pivot
-    };
+    let (h, gain) = (schedule.step, m * a / (inertia + m * a * a));
     let [mut x, mut y, mut heading, mut u, mut omega] = start;
     let (mut rest, mut turns) = ([0.0; 3], 0.0);
     let mut wrap = |heading: &mut f64, rest: &mut f64| {
@@ -70,12 +50,11 @@ pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedul
         }
         turns * std::f64::consts::TAU
     };
-    let mut carried = None;
     let mut nodes = Vec::new();
     for k in 0..=schedule.steps {
         let full = wrap(&mut heading, &mut rest[2]);
         let (sin, cos) = heading.sin_cos();
-        let v = carried.unwrap_or([u * cos, u * sin]);
+        let v = [u * cos, u * sin];
         let across = -sin * v[0] + cos * v[1];
         nodes.push(Seen {
             t: schedule.time(k),
@@ -86,14 +65,10 @@ pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedul
         if broken == B::Across {
             omega += m * a * across / inertia;
         }
-        if broken == B::Squares {
-            u = (u * u).sqrt().copysign(u);
-        }
         let (w, mean) = mean_velocities(broken, h, gain, a, [u, omega]);
         let d = 0.5 * h * w;
         let (direction, speed) = match broken {
             B::OneSided => (heading, u),
-            B::ByVelocity => (if u < 0.0 { heading + d + std::f64::consts::PI } else { heading + d }, mean),
             _ => (heading + d, mean),
         };
         let end = match broken {
@@ -101,11 +76,6 @@ pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedul
             B::UnitMass => [mean * d.cos() + a * w * d.sin(), w * (1.0 - 0.5 * h * a / (inertia + a * a) * mean)],
             _ => [mean * d.cos() + a * w * d.sin(), 2.0 * w - omega],
         };
-        if broken == B::Unprojected {
-            // Turned by the turn of the step, with the rounding of a rotation.
-            let (sin, cos) = (h * w).sin_cos();
-            carried = Some([v[0] * cos - v[1] * sin, v[0] * sin + v[1] * cos]);
-        }
         let moved = [h * speed * direction.cos(), h * speed * direction.sin(), h * w];
         for ((sum, rest), d) in [&mut x, &mut y, &mut heading].into_iter().zip(&mut rest).zip(moved) {
             let add = if broken == B::PlainSums { d } else { d + *rest };
@@ -114,9 +84,6 @@ pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedul
             *sum = new;
         }
         [u, omega] = end;
-        if broken == B::Coordinates {
-            omega = (omega + u) - u;
-        }
     }
     Recorded { nodes, ..Recorded::default() }
 }
@@ -128,7 +95,7 @@ fn mean_velocities(broken: Broken, h: f64, gain: f64, a: f64, [u, omega]: [f64; 
     if broken == Broken::OneSided {
         return (omega, u);
     }
-    let mut w = if broken == Broken::AnyRoot { 5.0 * omega } else { omega };
+    let mut w = omega;
     for _ in 0..50 {
         let residual = |w: f64| w * (1.0 + k * speed(w)) - omega;
         // A slope by a complex step would be finer than is needed here: only the residual decides.
@@ -152,9 +119,3 @@ fn mean_velocities(broken: Broken, h: f64, gain: f64, a: f64, [u, omega]: [f64; 
 pub(crate) fn straight(broken: Broken, speed: f64, spin: f64, step: f64, duration: f64) -> Recorded {
     run(broken, BODY, [0.0, 0.0, 0.0, speed, spin], schedule(step, duration))
 }
-
-pub(crate) fn value(run: &Recorded, value: usize) -> f64 {
-    run.nodes.last().map_or(f64::NAN, |node: &Seen| node.values[value])
-}
-
-const _: () = assert!(VALUES == 6);
