@@ -24,6 +24,7 @@ mod fault;
 mod file;
 mod finding;
 mod keys;
+mod opening;
 mod points;
 mod quantity;
 mod reading;
@@ -33,11 +34,10 @@ mod sections;
 mod settings;
 mod suggest;
 mod sweep;
-mod system;
+mod systems;
 mod table;
 mod text;
 mod time;
-mod train;
 mod variation;
 mod written;
 
@@ -46,14 +46,13 @@ pub use self::scene::Scene;
 pub use self::text::{AnyScene, BuildError, Given, TextScene};
 pub use ::text::{Coordinate, FREE, Family, Moved, TextMechanics, TextModel, Varied};
 pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
-pub use effects::{
-    EFFECTS, EffectInfo, HillSpec, Interpolation, PathShape, PathSpec, SceneEffect, TimeSpec, TrailersSpec,
-};
+pub use effects::{EFFECTS, EffectInfo, SceneEffect, TrailersSpec};
 pub use error::SceneError;
 pub use file::{files_of, name_of_path, path_of};
 pub use finding::{Place, SceneFinding};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
 pub use settings::{Setting, with_settings};
+pub use sleigh::effects::{AnyEffect, EffectList};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
-pub use systems::{AnyEffect, Column, EffectList, EffectPower, PARAMETERS, SceneSystem, SleighFamily, Started};
+pub use systems::{Column, EffectPower, PARAMETERS, Rotor, SceneSystem, SleighFamily, Started};

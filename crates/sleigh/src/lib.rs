@@ -22,7 +22,7 @@ mod state;
 mod system;
 mod time_function;
 
-pub use bodies::{ClosedPath, Flywheel, Guide, Guided};
+pub use bodies::{ClosedPath, Flywheel, Guide, Guided, PathShape, Polygon};
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;
 pub use closed::ClosedMap;

@@ -12,9 +12,11 @@ pub use table::Table;
 
 use crate::SleighError;
 use lagrangian::{Piecewise, Scalar};
+use serde::Serialize;
 
 /// A function of time: a force, a torque, a position.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum TimeFunction {
     /// The same value at all times.
     Constant(f64),
@@ -136,6 +138,45 @@ impl TimeFunction {
         match numbers.into_iter().find(|x| !x.is_finite()) {
             Some(value) => Err(SleighError::NotFinite { quantity, value }),
             None => Ok(self),
+        }
+    }
+}
+
+impl TimeFunction {
+    /// Whether the value changes in time.
+    #[must_use]
+    pub fn varies(&self) -> bool {
+        let changes = |values: &[f64]| values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits());
+        match self {
+            Self::Constant(_) => false,
+            Self::Sine { amplitude, frequency, .. } => *amplitude != 0.0 && *frequency != 0.0,
+            Self::Table(table) => changes(table.values()),
+            Self::Ramp(ramp) => changes(ramp.values()),
+            Self::Pulses(_) => true,
+            Self::Formula(formula) => !formula.is_constant(),
+        }
+    }
+
+    /// Whether the function, or its slope, jumps.
+    #[must_use]
+    pub fn has_corners(&self) -> bool {
+        match self {
+            Self::Constant(_) | Self::Sine { .. } | Self::Pulses(_) => false,
+            Self::Table(table) => table.times().len() > 1,
+            Self::Ramp(ramp) => ramp.times().len() > 1,
+            Self::Formula(formula) => formula.has_corners(),
+        }
+    }
+
+    /// A bound on the size of the values of a number, a sine or a table; the size of other functions at `t = 0`.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        let of = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        match self {
+            Self::Constant(value) | Self::Sine { amplitude: value, .. } => value.abs(),
+            Self::Table(table) => of(table.values()),
+            Self::Ramp(ramp) => of(ramp.values()),
+            Self::Pulses(_) | Self::Formula(_) => self.value(0.0_f64).abs(),
         }
     }
 }

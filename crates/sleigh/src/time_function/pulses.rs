@@ -1,16 +1,18 @@
 use super::table::{begun, checked, within};
 use crate::SleighError;
 use lagrangian::{Piecewise, Scalar};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Smooth pulses from rest to rest, one after the other: `f(t) = A_i/T_i (1 - cos(2 pi (t - t_i)/T_i))` from `t_i` to `t_i + T_i`,
 /// so that pulse `i` has the integral `A_i`; function and slope vanish at every seam, and after the last pulse.
 ///
 /// Like a [`Table`](crate::Table) it is evaluated as one of its pieces, the first until [`Piecewise::piece`] chooses another.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pulses {
     times: Vec<f64>,
     areas: Vec<f64>,
+    #[serde(skip)]
     current: usize,
 }
 
