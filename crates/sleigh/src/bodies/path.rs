@@ -1,5 +1,5 @@
 use crate::SleighError;
-use crate::checks::{finite, positive};
+use crate::error::{finite, positive};
 use crate::planimeter::{Holonomy, Leg, of_legs};
 use lagrangian::{Piecewise, Scalar};
 use serde::Serialize;

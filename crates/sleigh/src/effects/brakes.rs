@@ -1,6 +1,6 @@
 //! Forces against the motion.
 
-use crate::checks::{not_negative, positive};
+use crate::error::{not_negative, positive};
 use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{Sleigh, SleighBody, SleighError};
 use lagrangian::{Effect, Scalar};

@@ -1,6 +1,6 @@
 //! Potentials of the ground at the centre of mass.
 
-use crate::checks::{finite, positive};
+use crate::error::{finite, positive};
 use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{Sleigh, SleighBody, SleighError};
 use lagrangian::{Effect, EffectSlope, Scalar};

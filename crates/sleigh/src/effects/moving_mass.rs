@@ -1,4 +1,4 @@
-use crate::checks::positive;
+use crate::error::positive;
 use crate::series::PushInOwnAxes;
 use crate::{SleighBody, SleighError, TimeFunction};
 use lagrangian::{Effect, Piecewise, Scalar};
