@@ -99,22 +99,10 @@ impl Formula {
         }
     }
 
-    /// The value at `t`.
+    /// A derivative, by its order, on any number.
     #[inline(always)]
-    pub(super) fn value<S: Scalar>(&self, t: S) -> S {
-        t.apply(FormulaDerivative { formula: self, order: 0 })
-    }
-
-    /// The derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn slope<S: Scalar>(&self, t: S) -> S {
-        t.apply(FormulaDerivative { formula: self, order: 1 })
-    }
-
-    /// The second derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
-        t.apply(FormulaDerivative { formula: self, order: 2 })
+    pub(super) fn derivative<S: Scalar>(&self, order: usize, t: S) -> S {
+        t.apply(FormulaDerivative { formula: self, order })
     }
 }
 

@@ -53,62 +53,45 @@ impl TimeFunction {
     /// The value at `t`.
     #[inline(always)]
     pub fn value<S: Scalar>(&self, t: S) -> S {
-        if let Some(value) = self.constant() {
-            return S::constant(value).carried_as(t);
-        }
-        let value = t.called(
-            #[inline(always)]
-            |t| match self {
-                Self::Constant(value) => S::constant(*value),
-                Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
-                Self::Table(table) => S::constant(table.value()),
-                Self::Ramp(ramp) => ramp.value(t),
-                Self::Pulses(pulses) => pulses.value(t),
-                Self::Formula(formula) => formula.value(t),
-            },
-        );
-        value.carried_as(t)
+        self.derivative::<0, S>(t)
     }
 
     /// The derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn slope<S: Scalar>(&self, t: S) -> S {
-        if self.constant().is_some() {
-            return S::zero().carried_as(t);
-        }
-        let slope = t.called(
-            #[inline(always)]
-            |t| match self {
-                Self::Sine { amplitude, frequency, phase } => {
-                    (t * *frequency + *phase).cos() * (*amplitude * *frequency)
-                }
-                Self::Constant(_) | Self::Table(_) => S::zero(),
-                Self::Ramp(ramp) => S::constant(ramp.slope()),
-                Self::Pulses(pulses) => pulses.slope(t),
-                Self::Formula(formula) => formula.slope(t),
-            },
-        );
-        slope.carried_as(t)
+        self.derivative::<1, S>(t)
     }
 
     /// The second derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn curvature<S: Scalar>(&self, t: S) -> S {
-        if self.constant().is_some() {
-            return S::zero().carried_as(t);
+        self.derivative::<2, S>(t)
+    }
+
+    /// The derivative of this order, at most 2, in time at `t`.
+    #[inline(always)]
+    fn derivative<const ORDER: usize, S: Scalar>(&self, t: S) -> S {
+        if let Some(value) = self.constant() {
+            return S::constant(if ORDER == 0 { value } else { 0.0 }).carried_as(t);
         }
-        let curvature = t.called(
+        let derivative = t.called(
             #[inline(always)]
             |t| match self {
+                Self::Constant(_) | Self::Table(_) => S::zero(),
                 Self::Sine { amplitude, frequency, phase } => {
-                    (t * *frequency + *phase).sin() * -(*amplitude * *frequency * *frequency)
+                    let angle = t * *frequency + *phase;
+                    match ORDER {
+                        0 => angle.sin() * *amplitude,
+                        1 => angle.cos() * (*amplitude * *frequency),
+                        _ => angle.sin() * -(*amplitude * *frequency * *frequency),
+                    }
                 }
-                Self::Constant(_) | Self::Table(_) | Self::Ramp(_) => S::zero(),
-                Self::Pulses(pulses) => pulses.curvature(t),
-                Self::Formula(formula) => formula.curvature(t),
+                Self::Ramp(ramp) => ramp.derivative::<ORDER, S>(t),
+                Self::Pulses(pulses) => pulses.derivative::<ORDER, S>(t),
+                Self::Formula(formula) => formula.derivative(ORDER, t),
             },
         );
-        curvature.carried_as(t)
+        derivative.carried_as(t)
     }
 
     /// Value, slope and second derivative at `t`. A sine computes its sine and cosine once for all three.

@@ -38,28 +38,17 @@ impl Pulses {
         Some([*begin, end - begin, self.areas[self.current]])
     }
 
-    /// The value at `t`.
+    /// The derivative of this order in time at `t`.
     #[inline(always)]
-    pub(super) fn value<S: Scalar>(&self, t: S) -> S {
-        self.pulse()
-            .map_or(S::zero(), |[begin, length, area]| (-((t - begin) * (TAU / length)).cos() + 1.0) * (area / length))
-    }
-
-    /// The derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn slope<S: Scalar>(&self, t: S) -> S {
-        self.pulse().map_or(S::zero(), |[begin, length, area]| {
-            ((t - begin) * (TAU / length)).sin() * (area / length * (TAU / length))
-        })
-    }
-
-    /// The second derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
-        self.pulse().map_or(S::zero(), |[begin, length, area]| {
-            let rate = TAU / length;
-            ((t - begin) * rate).cos() * (area / length * rate * rate)
-        })
+    pub(super) fn derivative<const ORDER: usize, S: Scalar>(&self, t: S) -> S {
+        let Some([begin, length, area]) = self.pulse() else { return S::zero() };
+        let (rate, mean) = (TAU / length, area / length);
+        let angle = (t - begin) * rate;
+        match ORDER {
+            0 => (-angle.cos() + 1.0) * mean,
+            1 => angle.sin() * (mean * rate),
+            _ => angle.cos() * (mean * rate * rate),
+        }
     }
 }
 

@@ -66,17 +66,15 @@ impl Ramp {
         &self.values
     }
 
-    /// The value at `t`.
+    /// The derivative of this order in time at `t`.
     #[inline(always)]
-    pub(super) fn value<S: Scalar>(&self, t: S) -> S {
+    pub(super) fn derivative<const ORDER: usize, S: Scalar>(&self, t: S) -> S {
         let [begin, value, slope] = self.line();
-        (t - begin) * slope + value
-    }
-
-    /// The derivative in time.
-    #[inline(always)]
-    pub(super) fn slope(&self) -> f64 {
-        self.line()[2]
+        match ORDER {
+            0 => (t - begin) * slope + value,
+            1 => S::constant(slope),
+            _ => S::zero(),
+        }
     }
 }
 
