@@ -220,7 +220,7 @@ fn after_jump(scene: &Scene, t: f64, before: f64, middle: f64, place: &mut Place
 fn start(scene: &Scene, middle: f64) -> Place {
     let at = scene.start;
     let rotor = scene.effects.iter().find_map(|effect| match effect {
-        SceneEffect::Flywheel(Rotor { rotor_rate, .. }) => Some(*rotor_rate),
+        SceneEffect::Flywheel(Rotor { rate, .. }) => Some(*rate),
         _ => None,
     });
     let mut place = [at.x, at.y, at.heading, at.speed, at.turn_rate, 0.0, 0.0];
