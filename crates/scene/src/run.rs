@@ -5,6 +5,7 @@ use crate::keys;
 use crate::keys::{ALPHA, DURATION, STEP, TOLERANCE};
 use crate::suggest;
 use crate::table::TomlTable;
+use serde::Serialize;
 
 /// The method of a scene that names none.
 pub const DEFAULT_METHOD: &str = "dla";
@@ -53,15 +54,17 @@ impl Overrides<'_> {
 /// Unless an effect jumps between nodes (see [`Scene::schedule`](crate::Scene::schedule)), the run consists of [`steps`](Self::steps) equal
 /// steps of size [`actual_step`](Self::actual_step), which is `step` where the duration is a multiple of it, and otherwise as little less as
 /// makes the run end at `duration`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSettings {
     /// Name of the integrator; `dla` when left out.
     pub method: String,
     /// Where in the step the method `dla-alpha` evaluates the Lagrangian, from 0 to 1; other methods do not read it.
     /// May be left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub alpha: Option<f64>,
     /// The error of a step that a method aims for which chooses steps of its own; positive. Other methods do not read it. May be left
     /// out.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// The largest step to take, in s; positive.
     pub step: f64,

@@ -1,20 +1,24 @@
 use crate::SleighError;
 use crate::error::{finite, positive};
 use lagrangian::Scalar;
+use serde::Serialize;
 
 /// The free Chaplygin sleigh.
 ///
 /// `q = (x, y, theta)`: the blade's contact point `P = (x, y)` (m) and the heading `theta` (rad), with
 /// `e = (cos theta, sin theta)` along the blade and `n = (-sin theta, cos theta)` across it. The centre of mass is
 /// `C = P + a e`, the offset `a` signed: positive when the centre of mass is ahead of the blade.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sleigh {
     mass: f64,
     inertia: f64,
     offset: f64,
+    #[serde(skip)]
     pivot_inertia: f64,
+    #[serde(skip)]
     spin_gain: f64,
     /// `1/m` and `1/J`: a division takes as long as a dozen products.
+    #[serde(skip)]
     inverse: [f64; 2],
 }
 
@@ -107,7 +111,7 @@ impl SleighBody for Sleigh {
 }
 
 /// A state of the sleigh in the words of a scene: position and heading of the blade, and the two admissible velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SleighState {
     /// Position of the blade's contact point (m).
     pub x: f64,
