@@ -82,13 +82,12 @@ fn opened<T>(
 }
 
 fn empty(document: &Document<'_>) -> SceneError {
-    let fault = Fault {
-        variant: SceneError::Missing,
-        key: "",
-        problem: "the scene is empty".to_owned(),
-        found: None,
-        accepted: "the tables `[sleigh]` or `[system]`, `[start]` and `[run]`".to_owned(),
-        help: Some("`noslip new FILE` writes a scene to start from".to_owned()),
-    };
+    let fault = Fault::new(
+        SceneError::Missing,
+        "",
+        "the scene is empty",
+        "the tables `[sleigh]` or `[system]`, `[start]` and `[run]`",
+    )
+    .help("`noslip new FILE` writes a scene to start from".to_owned());
     document.fail(&(0..0), None, fault)
 }

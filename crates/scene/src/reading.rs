@@ -55,14 +55,8 @@ impl<'s> TomlTable<'s> {
     }
 
     fn wrong_length(&self, quantity: &KeyQuantity, found: usize, span: Range<usize>) -> SceneError {
-        let fault = Fault {
-            variant: SceneError::OutOfRange,
-            key: quantity.key,
-            problem: "has the wrong length".to_owned(),
-            found: Some(format!("a list of {found}")),
-            accepted: two(quantity),
-            help: None,
-        };
+        let fault = Fault::new(SceneError::OutOfRange, quantity.key, "has the wrong length", two(quantity))
+            .found(format!("a list of {found}"));
         self.fail_at(span, fault)
     }
 
@@ -142,7 +136,7 @@ impl<'s> TomlTable<'s> {
     /// The error for a value of the right type that makes no sense for its key.
     pub(crate) fn wrong(&self, key: &'static str, problem: &str, accepted: String) -> SceneError {
         let problem = problem.to_owned();
-        self.fail(Fault { variant: SceneError::OutOfRange, key, problem, found: None, accepted, help: None })
+        self.fail(Fault::new(SceneError::OutOfRange, key, problem, accepted))
     }
 }
 

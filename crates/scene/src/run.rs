@@ -159,14 +159,8 @@ impl RunSettings {
                 ("makes more than 1e12 steps", format!("at most {most:?} s, for the step of {step:?} s"))
             }
         };
-        Err(Fault {
-            variant: SceneError::OutOfRange,
-            key: culprit,
-            problem: problem.to_owned(),
-            found: Some(format!("{:?}", if blames_step { step } else { duration })),
-            accepted,
-            help: None,
-        })
+        Err(Fault::new(SceneError::OutOfRange, culprit, problem, accepted)
+            .found(format!("{:?}", if blames_step { step } else { duration })))
     }
 }
 
@@ -178,12 +172,8 @@ fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
 }
 
 fn unknown_method(method: &str, methods: &[&str]) -> Fault {
-    Fault {
-        variant: SceneError::UnknownName,
-        key: "method",
-        problem: "names no known method".to_owned(),
-        found: Some(format!("{:?}", keys::abridged(method))),
-        accepted: format!("one of {}", suggest::list(methods)),
-        help: suggest::nearest(method, methods.iter().copied()).map(suggest::did_you_mean),
-    }
+    let accepted = format!("one of {}", suggest::list(methods));
+    Fault::new(SceneError::UnknownName, "method", "names no known method", accepted)
+        .found(format!("{:?}", keys::abridged(method)))
+        .help(suggest::nearest(method, methods.iter().copied()).map(suggest::did_you_mean))
 }

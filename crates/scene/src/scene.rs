@@ -77,16 +77,13 @@ impl Scene {
             let jumps = self.run.duration / period * corners as f64;
             if jumps > MOST_JUMPS || jumps.is_nan() {
                 let most = MOST_JUMPS / corners as f64 * period;
-                return Err(Fault {
-                    variant: SceneError::OutOfRange,
-                    key: "duration",
-                    problem: "has more than 1e6 corners of the tracer's path".to_owned(),
-                    found: Some(format!("{:?}", self.run.duration)),
-                    accepted: format!(
-                        "at most {most:e} s, for a path of {corners} corners and a period of {period:?} s"
-                    ),
-                    help: None,
-                });
+                return Err(Fault::new(
+                    SceneError::OutOfRange,
+                    "duration",
+                    "has more than 1e6 corners of the tracer's path",
+                    format!("at most {most:e} s, for a path of {corners} corners and a period of {period:?} s"),
+                )
+                .found(format!("{:?}", self.run.duration)));
             }
         }
         Ok(())
@@ -97,29 +94,26 @@ impl Scene {
     fn not_finite(&self) -> Option<Fault> {
         let (mass, inertia, offset) = (self.sleigh.mass(), self.sleigh.inertia(), self.sleigh.offset());
         let fast = |key: &'static str, value: f64, mass: f64, unit: &str| {
-            (!(0.5 * mass * value * value).is_finite()).then(|| Fault {
-                variant: SceneError::OutOfRange,
-                key,
-                problem: "makes the kinetic energy too large for a number".to_owned(),
-                found: Some(format!("{value:?}")),
-                accepted: format!("from -L to L with L = {:.3e}, in {unit}", (f64::MAX / mass.max(1.0)).sqrt()),
-                help: None,
+            (!(0.5 * mass * value * value).is_finite()).then(|| {
+                Fault::new(
+                    SceneError::OutOfRange,
+                    key,
+                    "makes the kinetic energy too large for a number",
+                    format!("from -L to L with L = {:.3e}, in {unit}", (f64::MAX / mass.max(1.0)).sqrt()),
+                )
+                .found(format!("{value:?}"))
             })
         };
         fast("speed", self.start.speed, mass, "m/s")
             .or_else(|| fast("turn_rate", self.start.turn_rate, inertia + mass * offset * offset, "rad/s"))
             .or_else(|| {
                 let energy = self.energy().ok().filter(|energy| !energy.is_finite())?;
-                Some(Fault {
-                    variant: SceneError::OutOfRange,
-                    key: "x",
-                    problem: format!(
-                        "and the rest of the start have the energy {energy} J, which is not a finite number"
-                    ),
-                    found: None,
-                    accepted: "a start, and effects, with an energy that is a finite number, in J".to_owned(),
-                    help: None,
-                })
+                Some(Fault::new(
+                    SceneError::OutOfRange,
+                    "x",
+                    format!("and the rest of the start have the energy {energy} J, which is not a finite number"),
+                    "a start, and effects, with an energy that is a finite number, in J",
+                ))
             })
     }
 }
@@ -128,14 +122,9 @@ impl Scene {
 const MOST_JUMPS: f64 = 1e6;
 
 fn of_text() -> Fault {
-    Fault {
-        variant: SceneError::UnknownKey,
-        key: "",
-        problem: "makes the scene a system of text, and this command needs a sleigh".to_owned(),
-        found: None,
-        accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
-        help: Some("all commands except `phase` take systems of text".to_owned()),
-    }
+    let problem = "makes the scene a system of text, and this command needs a sleigh";
+    Fault::new(SceneError::UnknownKey, "", problem, "the tables `[sleigh]`, `[start]` and `[run]`")
+        .help("all commands except `phase` take systems of text".to_owned())
 }
 
 /// A title stands on one line.

@@ -152,14 +152,12 @@ pub fn with_settings(text: &str, origin: &str, settings: &[Setting]) -> Result<S
 }
 
 fn no_place(setting: &Setting, origin: &str, problem: String) -> SceneError {
-    let fault = Fault {
-        variant: SceneError::UnknownKey,
-        key: "",
+    let fault = Fault::new(
+        SceneError::UnknownKey,
+        "",
         problem,
-        found: None,
-        accepted: format!("keys of the scene {origin}, like start.speed, sleigh.offset, effects.0.stiffness.1"),
-        help: None,
-    };
+        format!("keys of the scene {origin}, like start.speed, sleigh.offset, effects.0.stiffness.1"),
+    );
     fault.at("--set", None, Some(setting.key.clone()), Excerpt::default())
 }
 

@@ -354,14 +354,9 @@ fn in_sweep(root: &TomlTable<'_>, error: SceneError) -> SceneError {
         (finding.field.as_deref()?.strip_prefix("--") == Some(key)).then_some((key, finding))
     });
     match given {
-        Some((key, finding)) => root.fail(Fault {
-            variant,
-            key,
-            problem: finding.problem.clone(),
-            found: None,
-            accepted: finding.accepted.clone(),
-            help: finding.help.clone(),
-        }),
+        Some((key, finding)) => root.fail(
+            Fault::new(variant, key, finding.problem.clone(), finding.accepted.clone()).help(finding.help.clone()),
+        ),
         None => error,
     }
 }

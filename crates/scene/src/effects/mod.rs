@@ -110,14 +110,9 @@ fn info_of(entry: &TomlTable<'_>) -> Result<&'static EffectInfo, SceneError> {
         return Err(entry.wrong_type("kind", kind, accepted()));
     };
     EFFECTS.iter().find(|info| info.name == name).ok_or_else(|| {
-        let fault = Fault {
-            variant: SceneError::UnknownName,
-            key: "kind",
-            problem: "names no known effect".to_owned(),
-            found: Some(format!("{:?}", abridged(name))),
-            accepted: accepted(),
-            help: suggest::nearest(name, names.iter().copied()).map(suggest::did_you_mean),
-        };
+        let fault = Fault::new(SceneError::UnknownName, "kind", "names no known effect", accepted())
+            .found(format!("{:?}", abridged(name)))
+            .help(suggest::nearest(name, names.iter().copied()).map(suggest::did_you_mean));
         entry.fail(fault)
     })
 }
