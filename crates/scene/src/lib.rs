@@ -39,7 +39,6 @@ mod table;
 mod text;
 mod time;
 mod variation;
-mod written;
 
 pub use self::built::{Built, BuiltScene, QUANTITIES, Quantity, SleighQuantity, StartPlace, text_quantities};
 pub use self::scene::Scene;

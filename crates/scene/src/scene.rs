@@ -5,6 +5,7 @@ use crate::fault::Fault;
 use crate::run::{Overrides, RunSettings};
 use crate::table::TomlTable;
 use crate::{SceneEffect, effects, sections};
+use serde::Serialize;
 use sleigh::{PathShape, Sleigh, SleighState, TimeFunction};
 use std::path::Path;
 use toml::de::DeTable;
@@ -53,6 +54,15 @@ impl Scene {
             None => sections::check_slip(&begin, &start, scene.table_rate().unwrap_or(0.0)).map(|()| scene),
             Some(fault) => Err(begin.fail(fault)),
         }
+    }
+
+    /// The scene as a file that reads back as the same scene, number by number.
+    ///
+    /// # Errors
+    /// [`toml::ser::Error`], which a scene of finite numbers does not give.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        let Self { name: _, title, sleigh, start, run, effects } = self;
+        toml::to_string(&WrittenFile { title, sleigh, start, run, effects })
     }
 
     /// A complete scene with comments, to start a new file from.
@@ -116,6 +126,17 @@ impl Scene {
                 ))
             })
     }
+}
+
+/// A scene as its file has it.
+#[derive(Serialize)]
+struct WrittenFile<'s> {
+    title: &'s str,
+    sleigh: &'s Sleigh,
+    start: &'s SleighState,
+    run: &'s RunSettings,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    effects: &'s [SceneEffect],
 }
 
 /// Maximum number of corners of a tracer's path in a run.
