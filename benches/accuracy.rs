@@ -38,8 +38,8 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
     }
 }
 
-impl<B> PushInOwnAxes<B> for AtBlade {
-    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+impl PushInOwnAxes for AtBlade {
+    fn in_own_axes(&self, _sleigh: &Sleigh) -> Option<OwnPush> {
         Some(OwnPush { center: Some([0.0; 2]), along: [0.0, -self.0], ..OwnPush::NOTHING })
     }
 }

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::facts::described;
 use crate::inspect::method_names;
 use crate::{table, terminal};
-use scene::AnyScene;
+use scene::{AnyScene, Overrides};
 use serde_json::{Map, Value, json};
 
 /// Checks every scene: an invalid one does not hide the next.
@@ -15,7 +15,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
     let mut above = "";
     for name in &arguments.scenes {
         let load = || -> Result<_, CliError> {
-            let scene = AnyScene::load_with(name, &arguments.set.set, &names)?;
+            let scene = AnyScene::load_with(name, &arguments.set.set, &Overrides::default(), &names)?;
             let facts = described(&scene)?;
             Ok((scene, facts))
         };

@@ -4,12 +4,12 @@ use crate::args::EquationsArguments;
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::{notes, table, terminal};
-use scene::AnyScene;
+use scene::{AnyScene, Overrides};
 use serde_json::json;
 
 /// The rates of coordinates and quasi-velocities, as formulas of these and of the time `t`.
 pub(crate) fn equations(arguments: &EquationsArguments) -> Result<(), CliError> {
-    let scene = AnyScene::load_with(&arguments.scene, &arguments.set.set, &method_names())?;
+    let scene = AnyScene::load_with(&arguments.scene, &arguments.set.set, &Overrides::default(), &method_names())?;
     let AnyScene::Text(text) = &scene else {
         let name = scene.name();
         return Err(CliError::Request(format!(

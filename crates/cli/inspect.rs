@@ -10,7 +10,9 @@ pub(crate) fn method_names() -> Vec<&'static str> {
 
 /// The scene of a command line, with what its flags say instead.
 pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<Scene, CliError> {
-    load_with((&arguments.scene, &arguments.set), method, arguments.step, arguments.duration, arguments.alpha)
+    let SceneArguments { step, duration, alpha, .. } = *arguments;
+    let overrides = Overrides { method, step, duration, alpha };
+    Ok(Scene::load_with(&arguments.scene, &arguments.set.set, &overrides, &method_names())?)
 }
 
 /// The scene of a command line, of either kind.
@@ -28,20 +30,7 @@ pub(crate) fn load_any_with(
 ) -> Result<AnyScene, CliError> {
     let names = method_names();
     let overrides = Overrides { method, step, duration, alpha };
-    Ok(AnyScene::load_over(scene, &settings.set, &overrides, &names)?)
-}
-
-/// The scene of that name, with the settings of the command line, of which flags come last.
-pub(crate) fn load_with(
-    (scene, settings): (&str, &Settings),
-    method: Option<&str>,
-    step: Option<f64>,
-    duration: Option<f64>,
-    alpha: Option<f64>,
-) -> Result<Scene, CliError> {
-    let names = method_names();
-    let overrides = Overrides { method, step, duration, alpha };
-    Ok(Scene::load_over(scene, &settings.set, &overrides, &names)?)
+    Ok(AnyScene::load_with(scene, &settings.set, &overrides, &names)?)
 }
 
 /// The method of a run, with its settings.

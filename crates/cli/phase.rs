@@ -7,10 +7,10 @@ use dla::{Mechanism, RunError, Schedule};
 use harness::analysis::{Rounds, weighted_mean};
 use harness::{Method, Run};
 use report::{Chart, Layer, chart_svg};
-use scene::{MAX_STEPS, PathShape, PathSpec, RunSettings, Scene, SceneEffect, Started};
+use scene::{MAX_STEPS, RunSettings, Scene, SceneEffect, Started};
 use serde_json::{Value, json};
-use sleigh::ClosedPath;
 use sleigh::planimeter::Holonomy;
+use sleigh::{ClosedPath, SleighError};
 use std::f64::consts::{PI, TAU};
 
 /// Loops for the curvature are smaller by 2, 4, .. 2^6.
@@ -38,13 +38,14 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
         _ => None,
     });
     let Some(path) = path else { return Err(CliError::WithoutTracer { scene: scene.name.clone() }) };
+    let period = path.period();
     if let Some(file) = &arguments.picture {
         FileRoles::of(&arguments.scene.scene).writes("--picture", Some(file)).check()?;
         check_file(file, arguments.scene.force)?;
     }
-    let loops = arguments.loops.unwrap_or((scene.run.duration / path.period).floor().max(1.0) as u64);
-    let steps = steps_of_a_loop(&scene, path.period, loops)?;
-    let schedule = |loops: u64| Schedule { t0: 0.0, step: path.period / steps as f64, steps: loops * steps };
+    let loops = arguments.loops.unwrap_or((scene.run.duration / period).floor().max(1.0) as u64);
+    let steps = steps_of_a_loop(&scene, period, loops)?;
+    let schedule = |loops: u64| Schedule { t0: 0.0, step: period / steps as f64, steps: loops * steps };
 
     let turned = |scene: &Scene, loops: u64| {
         let Started { system, q, v } = scene.system()?;
@@ -53,14 +54,13 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
         turns.map_err(|error| CliError::Computation(vec![format!("{}: {error}", method.info().name)]))
     };
     let turns = turned(&scene, loops)?;
-    let built = path.build()?;
     let moving = scene.effects.iter().any(|effect| matches!(effect, SceneEffect::Turntable { .. }));
     let mut measured = MeasuredPhase {
         step: schedule(1).step,
         turns,
-        area: built.area(),
+        area: path.area(),
         curvature: None,
-        exact: (!moving).then(|| built.holonomy(scene.sleigh.offset())).transpose()?,
+        exact: (!moving).then(|| path.holonomy(scene.sleigh.offset())).transpose()?,
         heading: scene.start.heading,
         offset: scene.sleigh.offset(),
     };
@@ -68,7 +68,7 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
         let mut ratios = Vec::new();
         for k in 1..=HALVINGS {
             let size = 0.5_f64.powi(k);
-            ratios.push((size, turned(&smaller(&scene, size), 1)?[0] / (size * size * measured.area)));
+            ratios.push((size, turned(&smaller(&scene, size)?, 1)?[0] / (size * size * measured.area)));
         }
         measured.curvature = Some(-at_zero(&ratios));
     }
@@ -77,7 +77,7 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
         write_whole(file, arguments.scene.force, |out| std::io::Write::write_all(out, picture.as_bytes()))?;
     }
     if arguments.scene.json {
-        terminal::print_json(&object(&scene, &method, &built, &measured))
+        terminal::print_json(&object(&scene, &method, path, &measured))
     } else {
         terminal::print(&text(&scene, &method, &measured))
     }
@@ -102,17 +102,14 @@ fn steps_of_a_loop(scene: &Scene, period: f64, loops: u64) -> Result<u64, CliErr
 }
 
 /// The scene with a path that many times as large.
-fn smaller(scene: &Scene, size: f64) -> Scene {
+fn smaller(scene: &Scene, size: f64) -> Result<Scene, SleighError> {
     let mut scene = scene.clone();
     for effect in &mut scene.effects {
-        if let SceneEffect::Tracer { path: PathSpec { shape, .. } } = effect {
-            match shape {
-                PathShape::Circle { radius, .. } => *radius *= size,
-                PathShape::Polygon(vertices) => vertices.iter_mut().flatten().for_each(|x| *x *= size),
-            }
+        if let SceneEffect::Tracer { path } = effect {
+            *path = path.scaled(size)?;
         }
     }
-    scene
+    Ok(scene)
 }
 
 /// The value at zero of the polynomial through some points (Neville).

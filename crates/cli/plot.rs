@@ -9,7 +9,7 @@ use crate::file_roles::FileRoles;
 use crate::in_memory::{self, RunRequest};
 use crate::{files, inspect, table, terminal};
 use report::{FigureFormat, MOST_PIXELS, Panel, Paper, Sheet, sheet};
-use scene::AnyScene;
+use scene::{AnyScene, Overrides};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -69,8 +69,8 @@ fn check_pixels(paper: &Paper, format: FigureFormat) -> Result<(), CliError> {
 fn load(arguments: &PlotArguments) -> Result<AnyScene, CliError> {
     let PlotArguments { input, set, step, duration, alpha, .. } = arguments;
     let names = inspect::method_names();
-    let scene = AnyScene::load_with(input, &set.set, &names)?;
-    Ok(scene.with_overrides(None, *step, *duration, *alpha, &names)?)
+    let overrides = Overrides { method: None, step: *step, duration: *duration, alpha: *alpha };
+    Ok(AnyScene::load_with(input, &set.set, &overrides, &names)?)
 }
 
 fn stem(path: &str) -> String {
@@ -125,7 +125,8 @@ fn run(
     request: &RunRequest,
     failures: &mut Vec<String>,
 ) -> Result<(String, Columns), CliError> {
-    let scene = scene.clone().with_overrides(Some(method), None, None, None, &inspect::method_names())?;
+    let overrides = Overrides { method: Some(method), ..Overrides::default() };
+    let scene = scene.clone().with_overrides(&overrides, &inspect::method_names())?;
     let result = in_memory::run(&scene, request, &Caller::default()).map_err(|error| match error.request {
         true => CliError::Request(error.message),
         false => CliError::Computation(vec![error.message]),

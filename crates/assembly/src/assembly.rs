@@ -1,7 +1,7 @@
 use crate::AssemblyError;
 use crate::element::Element;
+use crate::element::WIDEST;
 use crate::joint::{Joint, JointElement};
-use crate::local::WIDEST;
 use crate::system_element::SystemElement;
 use dla::ConstraintRow;
 use lagrangian::{Piecewise, System};

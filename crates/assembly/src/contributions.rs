@@ -1,8 +1,7 @@
+use crate::Assembly;
 use crate::assembly::PlacedElement;
-use crate::element::{Element, ElementBlocks};
-use crate::local::WIDEST;
+use crate::element::{ElementBlocks, WIDEST};
 use crate::pattern::Pattern;
-use crate::{Assembly, AssemblyState};
 
 /// The contributions of the elements at one point, each in its own place, and the matrix and vectors made of them.
 #[derive(Debug)]
@@ -153,14 +152,4 @@ pub(crate) fn gathered<T>(placed: &PlacedElement, of: impl Fn(usize) -> f64, the
 #[inline(always)]
 pub(crate) fn at<T>(placed: &PlacedElement, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
     gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))
-}
-
-/// Configuration and velocity of an element.
-#[inline(always)]
-pub(crate) fn at_state<T>(
-    placed: &PlacedElement,
-    state: &AssemblyState,
-    then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T,
-) -> T {
-    gathered(placed, |i| state.q()[i], |q| gathered(placed, |i| state.v()[i], |v| then(placed.element.as_ref(), q, v)))
 }

@@ -1,10 +1,8 @@
 use crate::assembly::PlacedElement;
-use crate::contributions::{MatrixPart, at_state, gathered};
-use crate::equations::AssemblyEquations;
+use crate::contributions::{MatrixPart, at, gathered};
+use crate::element::WIDEST;
+use crate::equations::{AssemblyEquations, add_terms, project};
 use crate::linear::Linear;
-use crate::local::WIDEST;
-use crate::projection::project;
-use crate::terms;
 use crate::{Assembly, AssemblyMethod, AssemblyState, Solver};
 use dla::convergence::rounding_of_place;
 use dla::{AssemblyFault, Stage, StepError};
@@ -102,7 +100,7 @@ impl SparseDla {
     fn solve(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, StepError> {
         let Self { equations, q0, q1, v, p, .. } = self;
         equations.contributions.ask(assembly, true, &|placed, out| {
-            at_state(placed, state, |element, q, v| element.beginning(t0, q, v, out));
+            at(placed, state.q(), state.v(), |q, v| placed.element.beginning(t0, q, v, out));
         });
         p.fill(0.0);
         equations.contributions.add_momenta(assembly, 1.0, p);
@@ -115,35 +113,17 @@ impl SparseDla {
             }
             let (q0, q1) = (&*q0, &*q1);
             equations.contributions.ask(assembly, derivatives, &|placed, out| {
-                gathered(
-                    placed,
-                    |i| q0[i],
-                    |q0| {
-                        gathered(
-                            placed,
-                            |i| v[i],
-                            |v| {
-                                let element = &placed.element;
-                                match &placed.origins {
-                                    None => gathered(
-                                        placed,
-                                        |i| q1[i],
-                                        |q1| {
-                                            element.increment((t0, h), [q0, q1], v, out);
-                                        },
-                                    ),
-                                    Some(origins) => relative(placed, origins, h, state, v, |q1| {
-                                        element.increment((t0, h), [q0, q1], v, out);
-                                    }),
-                                }
-                            },
-                        );
-                    },
-                );
+                at(placed, q0, v, |q0, v| {
+                    let then = |q1: &[f64]| placed.element.increment((t0, h), [q0, q1], v, out);
+                    match &placed.origins {
+                        None => gathered(placed, |i| q1[i], then),
+                        Some(origins) => relative(placed, origins, h, state, v, then),
+                    }
+                });
             });
             equations.write(assembly, derivatives.then_some(MatrixPart::ElementBlocks), p);
         };
-        let terms = |sizes: &mut [f64]| terms::add(assembly, (t0, h), |i| state.q()[i], |i| state.v()[i], sizes);
+        let terms = |sizes: &mut [f64]| add_terms(assembly, (t0, h), (state.q(), state.v()), sizes);
         equations.newton((assembly, Stage::Increment), v, terms, evaluate)
     }
 
@@ -152,13 +132,7 @@ impl SparseDla {
         let Self { equations, q0, q1, v, v1, p, .. } = self;
         let (q0, q1, v) = (&*q0, &*q1, &*v);
         equations.contributions.ask(assembly, false, &|placed, out| {
-            gathered(
-                placed,
-                |i| q0[i],
-                |q0| {
-                    gathered(placed, |i| v[i], |v| placed.element.end((t0, h), q0, v, out.momentum));
-                },
-            );
+            at(placed, q0, v, |q0, v| placed.element.end((t0, h), q0, v, out.momentum));
         });
         p.fill(0.0);
         // The right side of the equations is what the momenta still lack.
@@ -173,13 +147,10 @@ impl SparseDla {
         if !self.v.iter().zip(assembly.angles()).any(far) {
             return 0.0;
         }
-        let turns = assembly.placed().iter().map(|placed| {
-            gathered(
-                placed,
-                |i| self.q0[i],
-                |q0| gathered(placed, |i| self.v[i], |v| placed.element.turn((t0, h), q0, v)),
-            )
-        });
+        let turns = assembly
+            .placed()
+            .iter()
+            .map(|placed| at(placed, &self.q0, &self.v, |q0, v| placed.element.turn((t0, h), q0, v)));
         turns.fold(0.0, larger)
     }
 
@@ -189,17 +160,9 @@ impl SparseDla {
         const ROUNDING: f64 = 1e-16;
         let mut sums = [0.0; 3];
         for placed in assembly.placed().iter().filter(|placed| placed.element.acts()) {
-            let own = gathered(
-                placed,
-                |i| self.q0[i],
-                |q0| {
-                    gathered(
-                        placed,
-                        |i| self.v[i],
-                        |v| gathered(placed, |i| self.v1[i], |v1| placed.element.braking(step, q0, [v, v1])),
-                    )
-                },
-            );
+            let own = at(placed, &self.q0, &self.v, |q0, v| {
+                gathered(placed, |i| self.v1[i], |v1| placed.element.braking(step, q0, [v, v1]))
+            });
             sums = lagrangian::from_fn(|i| sums[i] + own[i]);
         }
         let [damping, inertia, all] = sums;
@@ -207,23 +170,6 @@ impl SparseDla {
             return Err(StepError::Overshoot { part: inertia / damping });
         }
         Ok(())
-    }
-}
-
-impl AssemblyEquations {
-    /// Writes the right side (minus the momenta and the levels), and a part of the matrix.
-    pub(crate) fn write(&mut self, assembly: &Assembly, part: Option<MatrixPart>, p: &[f64]) {
-        let Self { contributions, linear: Linear { pattern, values, right, .. }, .. } = self;
-        let n = assembly.coordinates();
-        let (momenta, levels) = right.split_at_mut(n);
-        for (right, p) in momenta.iter_mut().zip(p) {
-            *right = -p;
-        }
-        contributions.add_momenta(assembly, -1.0, momenta);
-        contributions.write_levels(assembly, levels);
-        if let Some(part) = part {
-            contributions.write_matrix(assembly, pattern, part, values);
-        }
     }
 }
 

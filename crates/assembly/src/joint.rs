@@ -1,5 +1,4 @@
-use crate::element::{Element, ElementBlocks};
-use crate::local::local;
+use crate::element::{Element, ElementBlocks, local};
 use dla::{Derivative, NotANumber, SystemFunction, Variable};
 use lagrangian::linear::larger;
 use lagrangian::{Dual, HyperDual, Scalar};

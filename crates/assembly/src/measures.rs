@@ -1,7 +1,7 @@
 //! What an assembly says of a state.
 
 use crate::element::Element;
-use crate::local::WIDEST;
+use crate::element::WIDEST;
 use crate::{Assembly, AssemblyState};
 use dla::{AssemblyFault, NewtonError, NotANumber, StepError};
 use lagrangian::linear::larger;

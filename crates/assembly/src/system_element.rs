@@ -1,10 +1,37 @@
-use crate::element::{Element, ElementBlocks};
-use crate::element_system::ElementSystem;
-use crate::local::local;
-use dla::{Discretisation, EndMomenta, NotANumber, Rules};
+use crate::element::{Element, ElementBlocks, local};
+use dla::{Discretisation, EndMomenta, Mechanics, NotANumber, Rules};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{Dual, Midpoint, Rounded, Saddle, from_fn};
+use lagrangian::{Dual, Midpoint, Motion, Piecewise, Rounded, Saddle, System, from_fn};
 use std::fmt;
+
+/// What an assembly asks of a system: what methods ask, and what only an assembly does.
+pub(crate) trait ElementSystem<const N: usize, const M: usize>: Mechanics<N, M> + Send + Sync {
+    /// The times at which it jumps, in the open interval from `from` to `to` (s).
+    fn jumps_between(&self, from: f64, to: f64) -> Vec<f64>;
+
+    /// The smooth piece that holds at the time `t` (s).
+    fn piece_at(&self, t: f64) -> Box<dyn ElementSystem<N, M>>;
+
+    /// The linear equations for the accelerations.
+    fn equations(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Saddle<N, M>;
+}
+
+impl<Sys, const N: usize, const M: usize> ElementSystem<N, M> for Sys
+where
+    Sys: System<N, M> + Piecewise + Send + Sync + 'static,
+{
+    fn jumps_between(&self, from: f64, to: f64) -> Vec<f64> {
+        self.jumps(from, to)
+    }
+
+    fn piece_at(&self, t: f64) -> Box<dyn ElementSystem<N, M>> {
+        Box::new(self.piece(t))
+    }
+
+    fn equations(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Saddle<N, M> {
+        Motion::equations(self, t, q, v)
+    }
+}
 
 /// Any static system as an element, with the midpoint rule for its discrete Lagrangian and constraint.
 ///

@@ -1,7 +1,6 @@
 use crate::Assembly;
 use crate::contributions::{at, gathered};
-use crate::element::ElementBlocks;
-use crate::local::WIDEST;
+use crate::element::{ElementBlocks, WIDEST};
 use crate::motion::ElementMotion;
 use dla::{Hermite, Place};
 use lagrangian::quadrature::gauss_legendre;

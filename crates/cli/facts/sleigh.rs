@@ -1,6 +1,7 @@
 use crate::table::{counted, number};
-use scene::{BuildError, BuiltScene, Interpolation, PathShape, PathSpec, Scene, SceneEffect, TimeSpec, TrailersSpec};
-use sleigh::SleighState;
+use scene::{AnyEffect, BuildError, BuiltScene, Rotor, Scene, SceneEffect, TrailersSpec};
+use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hill, MovingMass, QuadraticDrag};
+use sleigh::{ClosedPath, PathShape, SleighState, TimeFunction};
 
 /// The facts of a scene, with the state that it starts in.
 pub(crate) fn of(scene: &Scene) -> Result<Vec<(String, String)>, BuildError> {
@@ -42,46 +43,15 @@ fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &str) -> Vec
 /// An effect, in words.
 fn words(effect: &SceneEffect) -> String {
     match effect {
-        SceneEffect::Slope { gravity } => format!("slope: gravity {} m/s²", pair(gravity)),
-        SceneEffect::Bowl { stiffness, center } => {
-            let shape = if stiffness.contains(&0.0) { "valley" } else { "bowl" };
-            format!("{shape} of stiffness {} N/m about {} m", pair(stiffness), pair(center))
-        }
-        SceneEffect::EggCrate { height, wave_number } => {
-            format!("egg crate of height {} J, wave numbers {} 1/m", number(*height), pair(wave_number))
-        }
-        SceneEffect::Hills { hills } => {
-            let one = |hill: &scene::HillSpec| {
-                let [height, width] = [hill.height, hill.width].map(number);
-                format!("{height} J at {} m, {width} m wide", pair(&[hill.x, hill.y]))
-            };
-            format!("hills: {}", hills.iter().map(one).collect::<Vec<_>>().join("; "))
-        }
-        SceneEffect::Flywheel { inertia, rotor_rate, torque } => {
+        SceneEffect::Acting(effect) => acting(effect),
+        SceneEffect::Flywheel(Rotor { inertia, rate, torque }) => {
             let motor = match torque {
                 Some(torque) => format!("motor torque {}", function(torque, "N m")),
                 None => "running free".to_owned(),
             };
-            format!("flywheel of {} kg m², initially at {} rad/s, {motor}", number(*inertia), number(*rotor_rate))
+            format!("flywheel of {} kg m², initially at {} rad/s, {motor}", number(*inertia), number(*rate))
         }
-        SceneEffect::Drag { along, turning } => {
-            format!("drag: {} kg/s along the blade, {} kg m²/s against turning", number(*along), number(*turning))
-        }
-        SceneEffect::QuadraticDrag { along, turning } => format!(
-            "drag by the square: {} kg/m along the blade, {} kg m² against turning",
-            number(*along),
-            number(*turning)
-        ),
-        SceneEffect::Friction { along, smoothing, turning, turning_smoothing } => format!(
-            "friction: {} N along the blade above {} m/s, {} N m against turning above {} rad/s",
-            number(*along),
-            number(*smoothing),
-            number(*turning),
-            number(*turning_smoothing)
-        ),
-        SceneEffect::Thrust { force } => format!("thrust along the blade: {}", function(force, "N")),
-        SceneEffect::Torque { torque } => format!("torque on the heading: {}", function(torque, "N m")),
-        SceneEffect::MovingMass { mass, x, y } => {
+        SceneEffect::MovingMass(MovingMass { mass, x, y }) => {
             let [ahead, left] = [x, y].map(|place| function(place, "m"));
             format!("moving mass of {} kg: {ahead} ahead of the blade, {left} to the left", number(*mass))
         }
@@ -110,6 +80,44 @@ fn words(effect: &SceneEffect) -> String {
     }
 }
 
+/// What acts by a potential or a force, in words.
+fn acting(effect: &AnyEffect) -> String {
+    match effect {
+        AnyEffect::Slope(slope) => format!("slope: gravity {} m/s²", pair(&slope.gravity)),
+        AnyEffect::Bowl(Bowl { stiffness, center }) => {
+            let shape = if stiffness.contains(&0.0) { "valley" } else { "bowl" };
+            format!("{shape} of stiffness {} N/m about {} m", pair(stiffness), pair(center))
+        }
+        AnyEffect::EggCrate(EggCrate { height, wave_number }) => {
+            format!("egg crate of height {} J, wave numbers {} 1/m", number(*height), pair(wave_number))
+        }
+        AnyEffect::Hills(hills) => {
+            let one = |hill: &Hill| {
+                let [height, width] = [hill.height, hill.width].map(number);
+                format!("{height} J at {} m, {width} m wide", pair(&[hill.x, hill.y]))
+            };
+            format!("hills: {}", hills.hills.iter().map(one).collect::<Vec<_>>().join("; "))
+        }
+        AnyEffect::Drag(Drag { along, turning }) => {
+            format!("drag: {} kg/s along the blade, {} kg m²/s against turning", number(*along), number(*turning))
+        }
+        AnyEffect::QuadraticDrag(QuadraticDrag { along, turning }) => format!(
+            "drag by the square: {} kg/m along the blade, {} kg m² against turning",
+            number(*along),
+            number(*turning)
+        ),
+        AnyEffect::Friction(Friction { along, smoothing, turning, turning_smoothing }) => format!(
+            "friction: {} N along the blade above {} m/s, {} N m against turning above {} rad/s",
+            number(*along),
+            number(*smoothing),
+            number(*turning),
+            number(*turning_smoothing)
+        ),
+        AnyEffect::Thrust(thrust) => format!("thrust along the blade: {}", function(&thrust.force, "N")),
+        AnyEffect::Torque(torque) => format!("torque on the heading: {}", function(&torque.torque, "N m")),
+    }
+}
+
 fn least(list: &[f64]) -> f64 {
     list.iter().copied().fold(f64::INFINITY, f64::min)
 }
@@ -118,31 +126,30 @@ fn pair([x, y]: &[f64; 2]) -> String {
     format!("({}, {})", number(*x), number(*y))
 }
 
-fn function(function: &TimeSpec, unit: &str) -> String {
+fn function(function: &TimeFunction, unit: &str) -> String {
+    let points = |kind: &str, values: &[f64]| {
+        let first = values.first().copied().map_or_else(String::new, number);
+        format!("{kind} of {}, {first} {unit} at first", counted(values.len() as u64, "value"))
+    };
     match function {
-        TimeSpec::Constant(value) => format!("{} {unit}", number(*value)),
-        TimeSpec::Sine { amplitude, frequency, phase } => {
+        TimeFunction::Constant(value) => format!("{} {unit}", number(*value)),
+        TimeFunction::Sine { amplitude, frequency, phase } => {
             let shift = if *phase == 0.0 { String::new() } else { format!(" + {}", number(*phase)) };
             format!("{} sin({} t{shift}) {unit}", number(*amplitude), number(*frequency))
         }
-        TimeSpec::Formula(text) => format!("{} {unit}", text.escape_debug()),
-        TimeSpec::Table { times, values, interpolation } => {
-            let value = |value: Option<&f64>| value.copied().map_or_else(String::new, number);
-            let kind = match interpolation {
-                Interpolation::Steps => "a table",
-                Interpolation::Linear => "ramps",
-            };
-            format!("{kind} of {}, {} {unit} at first", counted(times.len() as u64, "value"), value(values.first()))
-        }
+        TimeFunction::Formula(formula) => format!("{} {unit}", formula.text().escape_debug()),
+        TimeFunction::Table(table) => points("a table", table.values()),
+        TimeFunction::Ramp(ramp) => points("ramps", ramp.values()),
+        TimeFunction::Pulses(_) => format!("pulses in {unit}"),
     }
 }
 
-fn round(path: &PathSpec) -> String {
-    let shape = match &path.shape {
+fn round(path: &ClosedPath) -> String {
+    let shape = match path.shape() {
         PathShape::Circle { radius, center } => {
             format!("a circle of radius {} m about {} m", number(*radius), pair(center))
         }
-        PathShape::Polygon(vertices) => format!("a polygon of {} vertices", vertices.len()),
+        PathShape::Polygon(polygon) => format!("a polygon of {} vertices", polygon.vertices().len()),
     };
-    format!("{shape}, once every {} s", number(path.period))
+    format!("{shape}, once every {} s", number(path.period()))
 }

@@ -14,7 +14,7 @@ use crate::table::ComparisonRow;
 use crate::{job, precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
 use report::Report;
-use scene::AnyScene;
+use scene::{AnyScene, Overrides};
 use words::Answers;
 
 /// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
@@ -44,7 +44,8 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
         return job::everything(folder.path());
     }
     let names = method_names();
-    let scene = AnyScene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
+    let overrides = Overrides { step: Some(STEP), duration: Some(DURATION), ..Overrides::default() };
+    let scene = AnyScene::load_with(SCENE, &[], &overrides, &names)?;
     let methods = methods(&METHODS, None, None)?;
     let interrupt = Interrupt::listen();
     let Comparison { rows, mut report, interrupted } =

@@ -6,7 +6,7 @@ use harness::METHODS;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scene::{AnyScene, Setting, bundled as scenes, bundled_texts, with_settings};
+use scene::{AnyScene, Overrides, Setting, bundled as scenes, bundled_texts, with_settings};
 
 fn names() -> Vec<&'static str> {
     METHODS.iter().map(|info| info.name).collect()
@@ -54,7 +54,7 @@ impl Scene {
         duration: Option<f64>,
         alpha: Option<f64>,
     ) -> PyResult<Self> {
-        let scene = self.scene.clone().with_overrides(method, step, duration, alpha, &names());
+        let scene = self.scene.clone().with_overrides(&Overrides { method, step, duration, alpha }, &names());
         Ok(Self { scene: scene.map_err(|error| RequestError::new_err(error.to_string()))? })
     }
 

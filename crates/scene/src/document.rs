@@ -36,7 +36,7 @@ impl Document<'_> {
             Some((accepted, field)) => (Some(field), format!("is not TOML: {problem}"), accepted),
             None => (None, format!("not TOML: {problem}"), expected.to_owned()),
         };
-        let fault = Fault { variant: SceneError::Syntax, key: "", problem, found: None, accepted, help: None };
+        let fault = Fault::new(SceneError::Syntax, "", problem, accepted);
         self.fail(&span, field, fault)
     }
 
@@ -50,15 +50,12 @@ impl Document<'_> {
         });
         // Of lines that nest as deep, the first.
         let (span, _) = lines.reduce(|most, line| if line.1 > most.1 { line } else { most }).unwrap_or((0..0, 0));
-        let fault = Fault {
-            variant: SceneError::Syntax,
-            key: "",
-            problem: format!("TOML that this program does not read: {}", error.message()),
-            found: None,
-            accepted: "keys of fewer than 80 parts, and lists and tables within one another fewer than 80 deep"
-                .to_owned(),
-            help: None,
-        };
+        let fault = Fault::new(
+            SceneError::Syntax,
+            "",
+            format!("TOML that this program does not read: {}", error.message()),
+            "keys of fewer than 80 parts, and lists and tables within one another fewer than 80 deep",
+        );
         self.fail(&span, None, fault)
     }
 

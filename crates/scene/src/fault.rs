@@ -16,17 +16,33 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
+    /// A fault of the value of `key`, with the problem and the accepted values.
+    pub(crate) fn new(
+        variant: fn(Box<SceneFinding>) -> SceneError,
+        key: &'static str,
+        problem: impl Into<String>,
+        accepted: impl Into<String>,
+    ) -> Self {
+        Self { variant, key, problem: problem.into(), found: None, accepted: accepted.into(), help: None }
+    }
+
+    /// With the value found.
+    pub(crate) fn found(self, found: impl Into<Option<String>>) -> Self {
+        Self { found: found.into(), ..self }
+    }
+
+    /// With what was probably meant.
+    pub(crate) fn help(self, help: impl Into<Option<String>>) -> Self {
+        Self { help: help.into(), ..self }
+    }
+
     /// The fault of a run with more corners of formulas of time than can be found.
     pub(crate) fn too_many_corners(duration: f64) -> Self {
-        Self {
-            variant: SceneError::OutOfRange,
-            key: "duration",
-            problem: "has more than 1e5 corners or jumps of `abs`, `sign`, `min` and `max` in the formulas of time"
-                .to_owned(),
-            found: Some(format!("{duration:?}")),
-            accepted: "a run with fewer of them, each of which ends a step".to_owned(),
-            help: Some("shorten the run, or use smooth functions, as `tanh(x/eps)` for `sign(x)`".to_owned()),
-        }
+        let problem = "has more than 1e5 corners or jumps of `abs`, `sign`, `min` and `max` in the formulas of time";
+        let accepted = "a run with fewer of them, each of which ends a step";
+        Self::new(SceneError::OutOfRange, "duration", problem, accepted)
+            .found(format!("{duration:?}"))
+            .help("shorten the run, or use smooth functions, as `tanh(x/eps)` for `sign(x)`".to_owned())
     }
 
     /// The error at a place of a text; what the text says there is shown and need not be found again.

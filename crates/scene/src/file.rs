@@ -148,13 +148,7 @@ fn not_utf8(origin: &str, bytes: &[u8], start: usize) -> SceneError {
     // The text before `start` is valid, so that the replacement characters leave the places in it as they are.
     let text = String::from_utf8_lossy(bytes);
     let replacement = char::REPLACEMENT_CHARACTER.len_utf8();
-    let fault = Fault {
-        variant: SceneError::Encoding,
-        key: "",
-        problem: "the file is not UTF-8".to_owned(),
-        found: bytes.get(start).map(|byte| format!("the byte 0x{byte:02x}")),
-        accepted: "TOML text in UTF-8".to_owned(),
-        help: None,
-    };
+    let fault = Fault::new(SceneError::Encoding, "", "the file is not UTF-8", "TOML text in UTF-8")
+        .found(bytes.get(start).map(|byte| format!("the byte 0x{byte:02x}")));
     Document { origin, text: &text }.fail(&(start..start + replacement), None, fault)
 }

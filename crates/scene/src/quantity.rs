@@ -65,13 +65,6 @@ impl KeyQuantity {
                 return Ok(());
             }
         };
-        Err(Fault {
-            variant: SceneError::OutOfRange,
-            key: self.key,
-            problem: problem.to_owned(),
-            found: Some(format!("{value:?}")),
-            accepted: self.accepted(),
-            help: None,
-        })
+        Err(Fault::new(SceneError::OutOfRange, self.key, problem, self.accepted()).found(format!("{value:?}")))
     }
 }

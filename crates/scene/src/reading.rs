@@ -1,10 +1,10 @@
 //! The values of effects: points, lists, paths.
 
-use crate::effects::{PathShape, PathSpec};
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::quantity::KeyQuantity;
 use crate::table::{TomlTable, as_f64};
+use sleigh::ClosedPath;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
@@ -55,14 +55,8 @@ impl<'s> TomlTable<'s> {
     }
 
     fn wrong_length(&self, quantity: &KeyQuantity, found: usize, span: Range<usize>) -> SceneError {
-        let fault = Fault {
-            variant: SceneError::OutOfRange,
-            key: quantity.key,
-            problem: "has the wrong length".to_owned(),
-            found: Some(format!("a list of {found}")),
-            accepted: two(quantity),
-            help: None,
-        };
+        let fault = Fault::new(SceneError::OutOfRange, quantity.key, "has the wrong length", two(quantity))
+            .found(format!("a list of {found}"));
         self.fail_at(span, fault)
     }
 
@@ -107,7 +101,7 @@ impl<'s> TomlTable<'s> {
     }
 
     /// A closed path.
-    pub(crate) fn path(&self, key: &'static str) -> Result<PathSpec, SceneError> {
+    pub(crate) fn path(&self, key: &'static str) -> Result<ClosedPath, SceneError> {
         let accepted = || {
             "`{circle = {radius, center}, period}` or `{polygon = [[x, y], ..], period}`, lengths in m and the period in s"
                 .to_owned()
@@ -115,18 +109,16 @@ impl<'s> TomlTable<'s> {
         let table = self.nested(key, &["circle", "polygon", "period"], accepted)?;
         let table = table.ok_or_else(|| self.missing(key, accepted()))?;
         let period = table.required(&PERIOD)?;
-        let shape = match (table.nested("circle", &["radius", "center"], accepted)?, table.get("polygon")) {
+        let path = match (table.nested("circle", &["radius", "center"], accepted)?, table.get("polygon")) {
             (Some(circle), None) => {
                 let center = circle.pair(&CENTER)?.unwrap_or([0.0; 2]);
-                PathShape::Circle { radius: circle.required(&RADIUS)?, center }
+                ClosedPath::circle(circle.required(&RADIUS)?, center, period)
             }
-            (None, Some(value)) => PathShape::Polygon(table.vertices(value)?),
+            (None, Some(value)) => ClosedPath::polygon(table.vertices(value)?, period),
             (Some(_), Some(_)) => return Err(table.wrong("polygon", "does not go with `circle`", accepted())),
             (None, None) => return Err(table.missing("circle", accepted())),
         };
-        let path = PathSpec { shape, period };
-        path.build().map_err(|error| table.wrong("polygon", &error.to_string(), accepted()))?;
-        Ok(path)
+        path.map_err(|error| table.wrong("polygon", &error.to_string(), accepted()))
     }
 
     fn vertices(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<[f64; 2]>, SceneError> {
@@ -144,7 +136,7 @@ impl<'s> TomlTable<'s> {
     /// The error for a value of the right type that makes no sense for its key.
     pub(crate) fn wrong(&self, key: &'static str, problem: &str, accepted: String) -> SceneError {
         let problem = problem.to_owned();
-        self.fail(Fault { variant: SceneError::OutOfRange, key, problem, found: None, accepted, help: None })
+        self.fail(Fault::new(SceneError::OutOfRange, key, problem, accepted))
     }
 }
 

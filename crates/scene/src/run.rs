@@ -5,6 +5,7 @@ use crate::keys;
 use crate::keys::{ALPHA, DURATION, STEP, TOLERANCE};
 use crate::suggest;
 use crate::table::TomlTable;
+use serde::Serialize;
 
 /// The method of a scene that names none.
 pub const DEFAULT_METHOD: &str = "dla";
@@ -53,15 +54,17 @@ impl Overrides<'_> {
 /// Unless an effect jumps between nodes (see [`Scene::schedule`](crate::Scene::schedule)), the run consists of [`steps`](Self::steps) equal
 /// steps of size [`actual_step`](Self::actual_step), which is `step` where the duration is a multiple of it, and otherwise as little less as
 /// makes the run end at `duration`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSettings {
     /// Name of the integrator; `dla` when left out.
     pub method: String,
     /// Where in the step the method `dla-alpha` evaluates the Lagrangian, from 0 to 1; other methods do not read it.
     /// May be left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub alpha: Option<f64>,
     /// The error of a step that a method aims for which chooses steps of its own; positive. Other methods do not read it. May be left
     /// out.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// The largest step to take, in s; positive.
     pub step: f64,
@@ -156,14 +159,8 @@ impl RunSettings {
                 ("makes more than 1e12 steps", format!("at most {most:?} s, for the step of {step:?} s"))
             }
         };
-        Err(Fault {
-            variant: SceneError::OutOfRange,
-            key: culprit,
-            problem: problem.to_owned(),
-            found: Some(format!("{:?}", if blames_step { step } else { duration })),
-            accepted,
-            help: None,
-        })
+        Err(Fault::new(SceneError::OutOfRange, culprit, problem, accepted)
+            .found(format!("{:?}", if blames_step { step } else { duration })))
     }
 }
 
@@ -175,12 +172,8 @@ fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
 }
 
 fn unknown_method(method: &str, methods: &[&str]) -> Fault {
-    Fault {
-        variant: SceneError::UnknownName,
-        key: "method",
-        problem: "names no known method".to_owned(),
-        found: Some(format!("{:?}", keys::abridged(method))),
-        accepted: format!("one of {}", suggest::list(methods)),
-        help: suggest::nearest(method, methods.iter().copied()).map(suggest::did_you_mean),
-    }
+    let accepted = format!("one of {}", suggest::list(methods));
+    Fault::new(SceneError::UnknownName, "method", "names no known method", accepted)
+        .found(format!("{:?}", keys::abridged(method)))
+        .help(suggest::nearest(method, methods.iter().copied()).map(suggest::did_you_mean))
 }

@@ -4,8 +4,9 @@ use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::run::{Overrides, RunSettings};
 use crate::table::TomlTable;
-use crate::{PathShape, PathSpec, SceneEffect, effects, sections};
-use sleigh::{Sleigh, SleighState};
+use crate::{SceneEffect, effects, sections};
+use serde::Serialize;
+use sleigh::{PathShape, Sleigh, SleighState, TimeFunction};
 use std::path::Path;
 use toml::de::DeTable;
 
@@ -28,34 +29,6 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene from text.
-    ///
-    /// `origin` is the file's name: messages show it, and the scene's name derives from it. `methods` are the names
-    /// that `run.method` may have.
-    ///
-    /// # Errors
-    /// [`SceneError`] with the first thing that is wrong with the text: its syntax, an unknown, missing or misplaced
-    /// key, a value of the wrong type or out of its range.
-    pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        Self::parse_with(text, origin, methods, &Overrides::default())
-    }
-
-    /// Parses a scene and replaces settings of its run. Consistency is checked after the replacement.
-    ///
-    /// # Errors
-    /// As [`parse`](Self::parse), and as [`with_overrides`](Self::with_overrides).
-    pub fn parse_with(
-        text: &str,
-        origin: &str,
-        methods: &[&str],
-        overrides: &Overrides<'_>,
-    ) -> Result<Self, SceneError> {
-        opened(text, origin, |document, entries| match entries.get("system") {
-            Some(system) => Err(document.fail(&system.span(), Some("system".to_owned()), of_text())),
-            None => Self::of(document, entries, methods, overrides),
-        })
-    }
-
     /// The scene of the tables of its text.
     pub(crate) fn of(
         document: Document<'_>,
@@ -63,6 +36,9 @@ impl Scene {
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
+        if let Some(system) = entries.get("system") {
+            return Err(document.fail(&system.span(), Some("system".to_owned()), of_text()));
+        }
         let root = TomlTable::root(document, entries)?;
         let name = name_of(document.origin);
         let title = one_line(root.text("title", "a string")?.unwrap_or(&name));
@@ -80,14 +56,13 @@ impl Scene {
         }
     }
 
-    /// Reads the bundled scene of that name, the standard input for `-`, or else the file at that path: `./turnaround` is always the
-    /// file.
+    /// The scene as a file that reads back as the same scene, number by number.
     ///
     /// # Errors
-    /// [`SceneError`] when there is neither, when the file cannot be read, is not UTF-8 or is larger than 16 MiB, and
-    /// as [`Scene::parse`] for its text.
-    pub fn load(name_or_path: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        Self::load_with(name_or_path, &[], methods)
+    /// [`toml::ser::Error`], which a scene of finite numbers does not give.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        let Self { name: _, title, sleigh, start, run, effects } = self;
+        toml::to_string(&WrittenFile { title, sleigh, start, run, effects })
     }
 
     /// A complete scene with comments, to start a new file from.
@@ -96,48 +71,29 @@ impl Scene {
         TEMPLATE
     }
 
-    /// The scene with the given settings of its run replaced: method, step and duration (s), and alpha.
-    ///
-    /// # Errors
-    /// [`SceneError`] when the settings are not valid together, as for a file; its field is the flag `--method`,
-    /// `--step`, `--duration` or `--alpha` of a setting given here, its origin `command line`.
-    pub fn with_overrides(
-        mut self,
-        method: Option<&str>,
-        step: Option<f64>,
-        duration: Option<f64>,
-        alpha: Option<f64>,
-        methods: &[&str],
-    ) -> Result<Self, SceneError> {
-        let overrides = Overrides { method, step, duration, alpha };
-        let outcome = self.run.replace(&overrides, methods).and_then(|()| self.too_many_jumps());
-        outcome.map_err(|fault| overrides.error(fault, &self.name))?;
-        Ok(self)
-    }
-
     /// The fault of a run with more jumps than memory holds.
-    fn too_many_jumps(&self) -> Result<(), Fault> {
+    pub(crate) fn too_many_jumps(&self) -> Result<(), Fault> {
         for effect in &self.effects {
-            if effect.functions().into_iter().any(|function| function.jumps(self.run.duration).is_none()) {
+            let unknown = |function: &TimeFunction| match function {
+                TimeFunction::Formula(formula) => formula.corners(0.0, self.run.duration).is_none(),
+                _ => false,
+            };
+            if effect.functions().into_iter().any(unknown) {
                 return Err(Fault::too_many_corners(self.run.duration));
             }
-            let SceneEffect::Tracer { path: PathSpec { shape: PathShape::Polygon(corners), period } } = effect else {
-                continue;
-            };
-            let jumps = self.run.duration / period * corners.len() as f64;
+            let SceneEffect::Tracer { path } = effect else { continue };
+            let PathShape::Polygon(polygon) = path.shape() else { continue };
+            let (corners, period) = (polygon.vertices().len(), path.period());
+            let jumps = self.run.duration / period * corners as f64;
             if jumps > MOST_JUMPS || jumps.is_nan() {
-                let most = MOST_JUMPS / corners.len() as f64 * period;
-                return Err(Fault {
-                    variant: SceneError::OutOfRange,
-                    key: "duration",
-                    problem: "has more than 1e6 corners of the tracer's path".to_owned(),
-                    found: Some(format!("{:?}", self.run.duration)),
-                    accepted: format!(
-                        "at most {most:e} s, for a path of {} corners and a period of {period:?} s",
-                        corners.len()
-                    ),
-                    help: None,
-                });
+                let most = MOST_JUMPS / corners as f64 * period;
+                return Err(Fault::new(
+                    SceneError::OutOfRange,
+                    "duration",
+                    "has more than 1e6 corners of the tracer's path",
+                    format!("at most {most:e} s, for a path of {corners} corners and a period of {period:?} s"),
+                )
+                .found(format!("{:?}", self.run.duration)));
             }
         }
         Ok(())
@@ -148,73 +104,48 @@ impl Scene {
     fn not_finite(&self) -> Option<Fault> {
         let (mass, inertia, offset) = (self.sleigh.mass(), self.sleigh.inertia(), self.sleigh.offset());
         let fast = |key: &'static str, value: f64, mass: f64, unit: &str| {
-            (!(0.5 * mass * value * value).is_finite()).then(|| Fault {
-                variant: SceneError::OutOfRange,
-                key,
-                problem: "makes the kinetic energy too large for a number".to_owned(),
-                found: Some(format!("{value:?}")),
-                accepted: format!("from -L to L with L = {:.3e}, in {unit}", (f64::MAX / mass.max(1.0)).sqrt()),
-                help: None,
+            (!(0.5 * mass * value * value).is_finite()).then(|| {
+                Fault::new(
+                    SceneError::OutOfRange,
+                    key,
+                    "makes the kinetic energy too large for a number",
+                    format!("from -L to L with L = {:.3e}, in {unit}", (f64::MAX / mass.max(1.0)).sqrt()),
+                )
+                .found(format!("{value:?}"))
             })
         };
         fast("speed", self.start.speed, mass, "m/s")
             .or_else(|| fast("turn_rate", self.start.turn_rate, inertia + mass * offset * offset, "rad/s"))
             .or_else(|| {
                 let energy = self.energy().ok().filter(|energy| !energy.is_finite())?;
-                Some(Fault {
-                    variant: SceneError::OutOfRange,
-                    key: "x",
-                    problem: format!(
-                        "and the rest of the start have the energy {energy} J, which is not a finite number"
-                    ),
-                    found: None,
-                    accepted: "a start, and effects, with an energy that is a finite number, in J".to_owned(),
-                    help: None,
-                })
+                Some(Fault::new(
+                    SceneError::OutOfRange,
+                    "x",
+                    format!("and the rest of the start have the energy {energy} J, which is not a finite number"),
+                    "a start, and effects, with an energy that is a finite number, in J",
+                ))
             })
     }
+}
+
+/// A scene as its file has it.
+#[derive(Serialize)]
+struct WrittenFile<'s> {
+    title: &'s str,
+    sleigh: &'s Sleigh,
+    start: &'s SleighState,
+    run: &'s RunSettings,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    effects: &'s [SceneEffect],
 }
 
 /// Maximum number of corners of a tracer's path in a run.
 const MOST_JUMPS: f64 = 1e6;
 
-/// Reads the tables of a scene's text, whichever kind the scene is.
-pub(crate) fn opened<T>(
-    text: &str,
-    origin: &str,
-    read: impl FnOnce(Document<'_>, &DeTable<'_>) -> Result<T, SceneError>,
-) -> Result<T, SceneError> {
-    // A byte-order mark is no part of the first line.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let document = Document { origin, text };
-    let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
-    if entries.is_empty() {
-        return Err(empty(&document));
-    }
-    read(document, &entries)
-}
-
 fn of_text() -> Fault {
-    Fault {
-        variant: SceneError::UnknownKey,
-        key: "",
-        problem: "makes the scene a system of text, and this command needs a sleigh".to_owned(),
-        found: None,
-        accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
-        help: Some("all commands except `phase` take systems of text".to_owned()),
-    }
-}
-
-fn empty(document: &Document<'_>) -> SceneError {
-    let fault = Fault {
-        variant: SceneError::Missing,
-        key: "",
-        problem: "the scene is empty".to_owned(),
-        found: None,
-        accepted: "the tables `[sleigh]` or `[system]`, `[start]` and `[run]`".to_owned(),
-        help: Some("`noslip new FILE` writes a scene to start from".to_owned()),
-    };
-    document.fail(&(0..0), None, fault)
+    let problem = "makes the scene a system of text, and this command needs a sleigh";
+    Fault::new(SceneError::UnknownKey, "", problem, "the tables `[sleigh]`, `[start]` and `[run]`")
+        .help("all commands except `phase` take systems of text".to_owned())
 }
 
 /// A title stands on one line.

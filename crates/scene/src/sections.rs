@@ -11,14 +11,12 @@ pub(crate) fn sleigh(table: &TomlTable<'_>) -> Result<Sleigh, SceneError> {
     let offset = table.required(&OFFSET)?;
     // With each number in its range, only the inertia about the blade can still overflow.
     Sleigh::new(mass, inertia, offset).map_err(|error| {
-        table.fail(Fault {
-            variant: SceneError::OutOfRange,
-            key: OFFSET.key,
-            problem: format!("does not give a sleigh: {error}"),
-            found: None,
-            accepted: "an offset such that inertia + mass * offset^2 is finite".to_owned(),
-            help: None,
-        })
+        table.fail(Fault::new(
+            SceneError::OutOfRange,
+            OFFSET.key,
+            format!("does not give a sleigh: {error}"),
+            "an offset such that inertia + mass * offset^2 is finite",
+        ))
     })
 }
 
@@ -31,14 +29,12 @@ pub(crate) fn start(table: &TomlTable<'_>) -> Result<SleighState, SceneError> {
     let in_full = [X_DOT.key, Y_DOT.key].into_iter().find(|key| table.get(key).is_some());
     let speed = match (table.get(SPEED.key), in_full) {
         (Some(_), Some(key)) => {
-            return Err(table.fail(Fault {
-                variant: SceneError::OutOfRange,
+            return Err(table.fail(Fault::new(
+                SceneError::OutOfRange,
                 key,
-                problem: "gives the velocity a second time, beside `speed`".to_owned(),
-                found: None,
-                accepted: "`speed`, or both of `x_dot` and `y_dot`".to_owned(),
-                help: None,
-            }));
+                "gives the velocity a second time, beside `speed`",
+                "`speed`, or both of `x_dot` and `y_dot`",
+            )));
         }
         (None, Some(_)) => along([table.required(&X_DOT)?, table.required(&Y_DOT)?], heading),
         (_, None) => table.required(&SPEED)?,
@@ -67,12 +63,13 @@ pub(crate) fn check_slip(table: &TomlTable<'_>, start: &SleighState, plane: f64)
     if slip.abs() <= ROUNDED * f64::hypot(x, y).max(f64::hypot(over_plane[0], over_plane[1])) {
         return Ok(());
     }
-    Err(table.fail(Fault {
-        variant: SceneError::OutOfRange,
-        key: Y_DOT.key,
-        problem: format!("and `x_dot` slip sideways at {slip:?} m/s, which the blade does not admit"),
-        found: None,
-        accepted: format!("a velocity along the blade, which points at heading {:?} rad", start.heading),
-        help: Some(format!("the part along the blade is `speed = {:?}`", start.speed)),
-    }))
+    Err(table.fail(
+        Fault::new(
+            SceneError::OutOfRange,
+            Y_DOT.key,
+            format!("and `x_dot` slip sideways at {slip:?} m/s, which the blade does not admit"),
+            format!("a velocity along the blade, which points at heading {:?} rad", start.heading),
+        )
+        .help(format!("the part along the blade is `speed = {:?}`", start.speed)),
+    ))
 }

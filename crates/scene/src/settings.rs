@@ -3,8 +3,6 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::Excerpt;
-use crate::{AnyScene, Overrides, Scene, bundled, file};
-use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
@@ -121,26 +119,6 @@ fn item<'v, 'd>(list: &'v DeArray<'d>, number: &str) -> Result<&'v Spanned<DeVal
     })
 }
 
-/// A text of a scene, and what messages call it: the bundled scene of that name, the standard input for `-`, or else a file.
-pub(crate) fn source(name_or_path: &str) -> Result<(Cow<'static, str>, Cow<'_, str>), SceneError> {
-    if let Some(scene) = bundled::named(name_or_path) {
-        return Ok((Cow::Borrowed(scene.text), Cow::Borrowed(scene.name)));
-    }
-    let origin = if name_or_path == "-" { "stdin" } else { name_or_path };
-    Ok((Cow::Owned(file::read(name_or_path)?), Cow::Borrowed(origin)))
-}
-
-/// Parses the text of that name or path with settings.
-fn loaded<T>(
-    name_or_path: &str,
-    settings: &[Setting],
-    parse: impl Fn(&str, &str) -> Result<T, SceneError>,
-) -> Result<T, SceneError> {
-    let (text, origin) = source(name_or_path)?;
-    // A byte-order mark is no part of the first line.
-    parse_with(text.strip_prefix('\u{feff}').unwrap_or(&text), &origin, settings, parse)
-}
-
 /// Parses a text with settings. An error of the text itself shows its line; one of the settings, the settings.
 pub(crate) fn parse_with<T>(
     text: &str,
@@ -174,14 +152,12 @@ pub fn with_settings(text: &str, origin: &str, settings: &[Setting]) -> Result<S
 }
 
 fn no_place(setting: &Setting, origin: &str, problem: String) -> SceneError {
-    let fault = Fault {
-        variant: SceneError::UnknownKey,
-        key: "",
+    let fault = Fault::new(
+        SceneError::UnknownKey,
+        "",
         problem,
-        found: None,
-        accepted: format!("keys of the scene {origin}, like start.speed, sleigh.offset, effects.0.stiffness.1"),
-        help: None,
-    };
+        format!("keys of the scene {origin}, like start.speed, sleigh.offset, effects.0.stiffness.1"),
+    );
     fault.at("--set", None, Some(setting.key.clone()), Excerpt::default())
 }
 
@@ -199,51 +175,5 @@ impl SceneError {
             finding.excerpt = Excerpt::default();
         }
         self
-    }
-}
-
-impl Scene {
-    /// Reads the scene of that name or path, as [`Scene::load`], or for `-` from the standard input, with other values in it.
-    ///
-    /// # Errors
-    /// [`SceneError`] as [`Scene::load`], and where a setting has no place in the scene or makes it invalid.
-    pub fn load_with(name_or_path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SceneError> {
-        Self::load_over(name_or_path, settings, &Overrides::default(), methods)
-    }
-
-    /// As [`load_with`](Self::load_with), and replaces settings of the run. Consistency is checked after the replacement.
-    ///
-    /// # Errors
-    /// As [`load_with`](Self::load_with), and as [`with_overrides`](Self::with_overrides).
-    pub fn load_over(
-        name_or_path: &str,
-        settings: &[Setting],
-        overrides: &Overrides<'_>,
-        methods: &[&str],
-    ) -> Result<Self, SceneError> {
-        loaded(name_or_path, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
-    }
-}
-
-impl AnyScene {
-    /// Reads a scene of either kind, as [`Scene::load_with`].
-    ///
-    /// # Errors
-    /// As [`Scene::load_with`].
-    pub fn load_with(name_or_path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SceneError> {
-        Self::load_over(name_or_path, settings, &Overrides::default(), methods)
-    }
-
-    /// As [`load_with`](Self::load_with), and replaces settings of the run. Consistency is checked after the replacement.
-    ///
-    /// # Errors
-    /// As [`load_with`](Self::load_with), and as [`with_overrides`](Self::with_overrides).
-    pub fn load_over(
-        name_or_path: &str,
-        settings: &[Setting],
-        overrides: &Overrides<'_>,
-        methods: &[&str],
-    ) -> Result<Self, SceneError> {
-        loaded(name_or_path, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
     }
 }

@@ -6,7 +6,7 @@ use crate::keys::{DURATION, STEP};
 use crate::table::TomlTable;
 use crate::text::varied;
 use crate::variation::UNKNOWN;
-use crate::{AnyScene, Scene, SceneError, file, suggest, variation};
+use crate::{AnyScene, Overrides, Scene, SceneError, file, suggest, variation};
 use sleigh::Sleigh;
 use thiserror::Error;
 use toml::de::DeTable;
@@ -107,8 +107,8 @@ impl Sweep {
         let bundled_text = bundled::named(name).map(|scene| scene.text.to_owned());
         let scene_text = bundled_text.map_or_else(|| file::read(name), Ok)?;
         let scene = AnyScene::parse(&scene_text, name, methods)?;
-        let scene =
-            scene.with_overrides(method, step, duration, None, methods).map_err(|error| in_sweep(&root, error))?;
+        let overrides = Overrides { method, step, duration, alpha: None };
+        let scene = scene.with_overrides(&overrides, methods).map_err(|error| in_sweep(&root, error))?;
         let mut table: Table = scene_text.parse().unwrap_or_default();
         if let Some(Value::Table(run)) = table.get_mut("run") {
             let numbers = [("step", step), ("duration", duration)];
@@ -246,8 +246,13 @@ impl Sweep {
     fn run_with(&self, scene: AnyScene, run: &[(String, f64)], methods: &[&str]) -> Result<AnyScene, SweepError> {
         let of = |key: &str| run.iter().find(|(known, _)| known == key).map(|(_, value)| *value);
         let method = of(variation::METHOD).and_then(|place| self.methods.get(place as usize));
-        let overrides = (method.map(String::as_str), of("run.step"), of("run.duration"), of("run.alpha"));
-        let outcome = scene.with_overrides(overrides.0, overrides.1, overrides.2, overrides.3, methods);
+        let overrides = Overrides {
+            method: method.map(String::as_str),
+            step: of("run.step"),
+            duration: of("run.duration"),
+            alpha: of("run.alpha"),
+        };
+        let outcome = scene.with_overrides(&overrides, methods);
         let mut scene = outcome.map_err(|error| {
             let finding = error.finding();
             let field = finding.and_then(|finding| finding.field.as_deref()).unwrap_or_default().replace("--", "run.");
@@ -349,14 +354,9 @@ fn in_sweep(root: &TomlTable<'_>, error: SceneError) -> SceneError {
         (finding.field.as_deref()?.strip_prefix("--") == Some(key)).then_some((key, finding))
     });
     match given {
-        Some((key, finding)) => root.fail(Fault {
-            variant,
-            key,
-            problem: finding.problem.clone(),
-            found: None,
-            accepted: finding.accepted.clone(),
-            help: finding.help.clone(),
-        }),
+        Some((key, finding)) => root.fail(
+            Fault::new(variant, key, finding.problem.clone(), finding.accepted.clone()).help(finding.help.clone()),
+        ),
         None => error,
     }
 }

@@ -84,14 +84,8 @@ impl<'s> TomlTable<'s> {
             (None, Some(near)) => Some(suggest::did_you_mean(near)),
             (None, None) => None,
         };
-        let fault = Fault {
-            variant: SceneError::UnknownKey,
-            key: "",
-            problem: format!("is not a key of {kind}"),
-            found: None,
-            accepted: suggest::list(known),
-            help,
-        };
+        let fault =
+            Fault::new(SceneError::UnknownKey, "", format!("is not a key of {kind}"), suggest::list(known)).help(help);
         Err(self.document.fail(&key.span(), Some(keys::path(&self.path, name)), fault))
     }
 
@@ -169,19 +163,13 @@ impl<'s> TomlTable<'s> {
     /// The error of a key that is not there.
     pub(crate) fn missing(&self, key: &'static str, accepted: String) -> SceneError {
         let problem = "is missing".to_owned();
-        self.fail(Fault { variant: SceneError::Missing, key, problem, found: None, accepted, help: None })
+        self.fail(Fault::new(SceneError::Missing, key, problem, accepted))
     }
 
     /// The error of a value whose type is not the accepted one.
     pub(crate) fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, accepted: String) -> SceneError {
-        let fault = Fault {
-            variant: SceneError::WrongType,
-            key: "",
-            problem: "has the wrong type".to_owned(),
-            found: Some(type_name(value.get_ref()).to_owned()),
-            accepted,
-            help: None,
-        };
+        let fault = Fault::new(SceneError::WrongType, "", "has the wrong type", accepted)
+            .found(type_name(value.get_ref()).to_owned());
         self.document.fail(&value.span(), Some(keys::path(&self.path, key)), fault)
     }
 

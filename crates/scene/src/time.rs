@@ -1,10 +1,10 @@
 //! Functions of time.
 
-use crate::effects::{Interpolation, TimeSpec};
 use crate::error::SceneError;
 use crate::points;
 use crate::quantity::KeyQuantity;
 use crate::table::{TomlTable, as_f64};
+use sleigh::{Formula, Ramp, SleighError, Table, TimeFunction};
 use toml::de::DeValue;
 
 const FREQUENCY: KeyQuantity = KeyQuantity::finite("frequency", "rad/s");
@@ -20,15 +20,15 @@ const FORMS: [&[&str]; 3] = [
 
 impl TomlTable<'_> {
     /// A function of time: a number, a formula, a sine, or points in the scene or in a file; if the table has it.
-    pub(crate) fn time_function(&self, quantity: &KeyQuantity) -> Result<Option<TimeSpec>, SceneError> {
+    pub(crate) fn time_function(&self, quantity: &KeyQuantity) -> Result<Option<TimeFunction>, SceneError> {
         let Some(value) = self.get(quantity.key) else { return Ok(None) };
         if as_f64(value.get_ref()).is_some() {
-            return Ok(self.number(quantity)?.map(TimeSpec::Constant));
+            return Ok(self.number(quantity)?.map(TimeFunction::Constant));
         }
         if let DeValue::String(text) = value.get_ref() {
-            let spec = TimeSpec::Formula(text.to_string());
-            spec.build().map_err(|error| self.wrong(quantity.key, &said(&error), accepted(quantity)))?;
-            return Ok(Some(spec));
+            let formula = Formula::new(text);
+            let formula = formula.map_err(|error| self.wrong(quantity.key, &said(&error), accepted(quantity)))?;
+            return Ok(Some(TimeFunction::Formula(formula)));
         }
         let known = ["amplitude", "frequency", "phase", "times", "values", "file", "columns", "interpolation"];
         let Some(table) = self.nested(quantity.key, &known, || accepted(quantity))? else { return Ok(None) };
@@ -40,32 +40,37 @@ impl TomlTable<'_> {
             return Err(table.wrong(key, &problem, accepted(quantity)));
         }
         if form[0] == "amplitude" {
-            return Ok(Some(TimeSpec::Sine {
+            return Ok(Some(TimeFunction::Sine {
                 amplitude: table.required(&quantity.named("amplitude"))?,
                 frequency: table.required(&FREQUENCY)?,
                 phase: table.number(&PHASE)?.unwrap_or(0.0),
             }));
         }
-        let interpolation = table.interpolation()?;
+        let linear = table.is_linear()?;
         let (times, values) = match form[0] {
             "file" => table.points_of_file(quantity)?,
             _ => (table.listed(&TIMES)?, table.listed(&quantity.named("values"))?),
         };
-        let spec = TimeSpec::Table { times, values, interpolation };
-        spec.build().map_err(|error| table.wrong(form[0], &error.to_string(), accepted(quantity)))?;
-        Ok(Some(spec))
+        let function = match linear {
+            true => Ramp::new(times, values).map(TimeFunction::Ramp),
+            false => Table::new(times, values).map(TimeFunction::Table),
+        };
+        function.map(Some).map_err(|error| table.wrong(form[0], &error.to_string(), accepted(quantity)))
     }
 
     /// A function of time.
-    pub(crate) fn required_function(&self, quantity: &KeyQuantity) -> Result<TimeSpec, SceneError> {
+    pub(crate) fn required_function(&self, quantity: &KeyQuantity) -> Result<TimeFunction, SceneError> {
         self.time_function(quantity)?.ok_or_else(|| self.missing(quantity.key, accepted(quantity)))
     }
 
-    fn interpolation(&self) -> Result<Interpolation, SceneError> {
+    /// Whether straight lines join the points of a table; where the table does not say it, steps do.
+    fn is_linear(&self) -> Result<bool, SceneError> {
         let names = || "`\"steps\"` or `\"linear\"`".to_owned();
-        let Some(name) = self.text("interpolation", &names())? else { return Ok(Interpolation::default()) };
-        let found = Interpolation::NAMES.into_iter().find(|(known, _)| *known == name);
-        found.map(|(_, one)| one).ok_or_else(|| self.wrong("interpolation", "is not a known interpolation", names()))
+        match self.text("interpolation", &names())? {
+            None | Some("steps") => Ok(false),
+            Some("linear") => Ok(true),
+            Some(_) => Err(self.wrong("interpolation", "is not a known interpolation", names())),
+        }
     }
 
     fn listed(&self, quantity: &KeyQuantity) -> Result<Vec<f64>, SceneError> {
@@ -93,9 +98,9 @@ impl TomlTable<'_> {
 }
 
 /// The words of an error whose beginning the message has already.
-fn said(error: &sleigh::SleighError) -> String {
+fn said(error: &SleighError) -> String {
     match error {
-        sleigh::SleighError::Formula { problem } => format!("is not a function of the time `t`: {problem}"),
+        SleighError::Formula { problem } => format!("is not a function of the time `t`: {problem}"),
         other => other.to_string(),
     }
 }

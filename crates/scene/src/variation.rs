@@ -161,7 +161,7 @@ fn fail(
     problem: &str,
     accepted: &str,
 ) -> SceneError {
-    let (problem, accepted) = (problem.to_owned(), accepted.to_owned());
-    let fault = Fault { variant: SceneError::OutOfRange, key: "", problem, found, accepted, help: None };
+    let (problem, accepted) = (problem, accepted.to_owned());
+    let fault = Fault::new(SceneError::OutOfRange, "", problem, accepted).found(found);
     root.document.fail(span, Some(key.to_owned()), fault)
 }

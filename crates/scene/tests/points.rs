@@ -1,6 +1,7 @@
 //! Functions of time whose points lie in a file beside the scene.
 
-use scene::{Interpolation, Scene, SceneEffect, SceneError, TimeSpec};
+use scene::{AnyEffect, Scene, SceneEffect, SceneError};
+use sleigh::TimeFunction;
 use std::fs;
 
 const SCENE: &str = "[sleigh]
@@ -32,16 +33,18 @@ fn read(points: Option<&str>, force: &str) -> Result<Scene, SceneError> {
 fn columns_are_found_by_name_with_or_without_unit() {
     let points = "# measured on a Tuesday\nt [s], left, force [N]\n0.0, 7, 1.5\n0.5, 8, -2\n1e0, 9, 0.25\n";
     for column in ["force", "force [N]"] {
-        for (interpolation, kind) in
-            [("", Interpolation::Steps), (", interpolation = \"linear\"", Interpolation::Linear)]
-        {
+        for (interpolation, linear) in [("", false), (", interpolation = \"linear\"", true)] {
             let force = format!("{{ file = \"points.csv\", columns = [\"t\", \"{column}\"]{interpolation} }}");
             let scene = read(Some(points), &force).unwrap_or_else(|error| panic!("{error}"));
-            let [SceneEffect::Thrust { force: TimeSpec::Table { times, values, interpolation } }] = &scene.effects[..]
-            else {
+            let [SceneEffect::Acting(AnyEffect::Thrust(thrust))] = &scene.effects[..] else {
                 panic!("{:?}", scene.effects)
             };
-            assert_eq!((times, values, interpolation), (&vec![0.0, 0.5, 1.0], &vec![1.5, -2.0, 0.25], &kind));
+            let (times, values) = match (&thrust.force, linear) {
+                (TimeFunction::Table(table), false) => (table.times(), table.values()),
+                (TimeFunction::Ramp(ramp), true) => (ramp.times(), ramp.values()),
+                (other, _) => panic!("{other:?}"),
+            };
+            assert_eq!((times, values), (&[0.0, 0.5, 1.0][..], &[1.5, -2.0, 0.25][..]));
             // The jumps are nodes, and so are the corners of ramps: here at 0.5 and 1.
             assert_eq!(scene.jumps().unwrap().len(), 2);
         }

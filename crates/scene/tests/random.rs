@@ -2,8 +2,11 @@
 
 use dla::{Piece, Schedule, make_steps, piece_by_piece};
 use proptest::prelude::*;
-use scene::{HillSpec, Interpolation, PathShape, PathSpec, RunSettings, Scene, SceneEffect, SceneError, TimeSpec};
-use sleigh::{Sleigh, SleighState};
+use scene::{Rotor, RunSettings, Scene, SceneEffect, SceneError};
+use sleigh::effects::{
+    AnyEffect, Bowl, Drag, EggCrate, Friction, Hill, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque,
+};
+use sleigh::{ClosedPath, Formula, Sleigh, SleighState, Table, TimeFunction};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
 
@@ -26,51 +29,51 @@ fn pair() -> impl Strategy<Value = [f64; 2]> {
 /// A function of time; its table, if it is one, jumps where every step of `scenes` has a node: never within the run.
 ///
 /// On the heap, as what acts is: trees of values within one another outgrow the stack of a test.
-fn function() -> BoxedStrategy<TimeSpec> {
+fn function() -> BoxedStrategy<TimeFunction> {
     prop_oneof![
-        number().prop_map(TimeSpec::Constant),
-        (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeSpec::Sine {
+        number().prop_map(TimeFunction::Constant),
+        (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeFunction::Sine {
             amplitude,
             frequency,
             phase
         }),
-        (number(), number()).prop_map(|(a, b)| TimeSpec::Table {
-            times: vec![-1.0, 0.0],
-            values: vec![a, b],
-            interpolation: Interpolation::Steps
-        }),
-        number().prop_map(|a| TimeSpec::Formula(format!("{a:?}*cos(t)"))),
+        (number(), number()).prop_map(|(a, b)| TimeFunction::Table(Table::new(vec![-1.0, 0.0], vec![a, b]).unwrap())),
+        number().prop_map(|a| TimeFunction::Formula(Formula::new(&format!("{a:?}*cos(t)")).unwrap())),
     ]
     .boxed()
 }
 
-fn hill() -> impl Strategy<Value = HillSpec> {
-    (number(), number(), number(), positive()).prop_map(|(height, x, y, width)| HillSpec { height, x, y, width })
+fn hill() -> impl Strategy<Value = Hill> {
+    (number(), number(), number(), positive()).prop_map(|(height, x, y, width)| Hill { height, x, y, width })
 }
 
 /// Any effect that a scene may have several of.
 fn acting() -> BoxedStrategy<SceneEffect> {
     let smooth = prop_oneof![
-        number().prop_map(TimeSpec::Constant),
-        (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeSpec::Sine {
+        number().prop_map(TimeFunction::Constant),
+        (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeFunction::Sine {
             amplitude,
             frequency,
             phase
         }),
     ];
-    prop_oneof![
-        pair().prop_map(|gravity| SceneEffect::Slope { gravity }),
-        (pair(), pair()).prop_map(|(stiffness, center)| SceneEffect::Bowl { stiffness, center }),
-        (number(), pair()).prop_map(|(height, wave_number)| SceneEffect::EggCrate { height, wave_number }),
-        prop::collection::vec(hill(), 0..3).prop_map(|hills| SceneEffect::Hills { hills }),
-        (positive(), positive()).prop_map(|(along, turning)| SceneEffect::Drag { along, turning }),
-        (positive(), positive()).prop_map(|(along, turning)| SceneEffect::QuadraticDrag { along, turning }),
+    let forces = prop_oneof![
+        pair().prop_map(|gravity| AnyEffect::from(Slope { gravity })),
+        (pair(), pair()).prop_map(|(stiffness, center)| Bowl { stiffness, center }.into()),
+        (number(), pair()).prop_map(|(height, wave_number)| EggCrate { height, wave_number }.into()),
+        prop::collection::vec(hill(), 0..3).prop_map(|hills| Hills { hills }.into()),
+        (positive(), positive()).prop_map(|(along, turning)| Drag { along, turning }.into()),
+        (positive(), positive()).prop_map(|(along, turning)| QuadraticDrag { along, turning }.into()),
         prop::array::uniform4(positive()).prop_map(|[along, smoothing, turning, turning_smoothing]| {
-            SceneEffect::Friction { along, smoothing, turning, turning_smoothing }
+            Friction { along, smoothing, turning, turning_smoothing }.into()
         }),
-        function().prop_map(|force| SceneEffect::Thrust { force }),
-        function().prop_map(|torque| SceneEffect::Torque { torque }),
-        (positive(), smooth.clone(), smooth).prop_map(|(mass, x, y)| SceneEffect::MovingMass { mass, x, y }),
+        function().prop_map(|force| Thrust { force }.into()),
+        function().prop_map(|torque| Torque { torque }.into()),
+    ];
+    prop_oneof![
+        9 => forces.prop_map(SceneEffect::Acting),
+        1 => (positive(), smooth.clone(), smooth)
+            .prop_map(|(mass, x, y)| SceneEffect::MovingMass(MovingMass { mass, x, y })),
     ]
     .boxed()
 }
@@ -78,13 +81,13 @@ fn acting() -> BoxedStrategy<SceneEffect> {
 /// At most one rotor, one guide and one table, then what acts on them.
 fn effects() -> impl Strategy<Value = Vec<SceneEffect>> {
     let flywheel = (positive(), number(), prop::option::of(function()))
-        .prop_map(|(inertia, rotor_rate, torque)| SceneEffect::Flywheel { inertia, rotor_rate, torque });
+        .prop_map(|(inertia, rate, torque)| SceneEffect::Flywheel(Rotor { inertia, rate, torque }));
     let guide = prop_oneof![
         (function(), prop::option::of(function()))
             .prop_map(|(speed, turn_rate)| SceneEffect::Servo { speed: Some(speed), turn_rate }),
         function().prop_map(|turn_rate| SceneEffect::Servo { speed: None, turn_rate: Some(turn_rate) }),
         (positive(), pair(), positive()).prop_map(|(radius, center, period)| SceneEffect::Tracer {
-            path: PathSpec { shape: PathShape::Circle { radius, center }, period },
+            path: ClosedPath::circle(radius, center, period).unwrap(),
         }),
     ];
     let turntable = number().prop_map(|rate| SceneEffect::Turntable { rate });

@@ -1,6 +1,6 @@
 //! The number of steps, and settings from the command line.
 
-use scene::{MAX_STEPS, RunSettings, Scene, SceneError};
+use scene::{AnyScene, MAX_STEPS, Overrides, RunSettings, SceneError};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
 
@@ -48,25 +48,26 @@ fn unchecked_settings_do_not_panic() {
     }
 }
 
-type Overrides = (Option<&'static str>, Option<f64>, Option<f64>, Option<f64>);
+type Given = (Option<&'static str>, Option<f64>, Option<f64>, Option<f64>);
 
-fn overridden((method, step, duration, alpha): Overrides) -> Result<Scene, SceneError> {
-    Scene::load("circle", METHODS).unwrap().with_overrides(method, step, duration, alpha, METHODS)
+fn overridden((method, step, duration, alpha): Given) -> Result<AnyScene, SceneError> {
+    let overrides = Overrides { method, step, duration, alpha };
+    AnyScene::load("circle", METHODS).unwrap().with_overrides(&overrides, METHODS)
 }
 
 #[test]
 fn overrides_replace_what_they_name() {
-    let scene = Scene::load("circle", METHODS).unwrap();
+    let mut scene = AnyScene::load("circle", METHODS).unwrap();
     assert_eq!(overridden((None, None, None, None)).unwrap(), scene);
     let changed = overridden((Some("dla-alpha"), Some(0.5), Some(2.0), Some(0.25))).unwrap();
-    let run =
+    *scene.run_mut() =
         RunSettings { method: "dla-alpha".to_owned(), alpha: Some(0.25), tolerance: None, step: 0.5, duration: 2.0 };
-    assert_eq!(changed, Scene { run, ..scene });
+    assert_eq!(changed, scene);
 }
 
 #[test]
 fn bad_overrides_name_their_flag() {
-    let cases: &[(Overrides, &[&str])] = &[
+    let cases: &[(Given, &[&str])] = &[
         (
             (Some("rk5"), None, None, None),
             &["`--method`", "found \"rk5\"", "`dla-alpha`, `rk4`", "did you mean `rk4`?"],
@@ -96,9 +97,10 @@ fn bad_overrides_name_their_flag() {
 
 #[test]
 fn settings_of_the_scene_are_not_blamed_on_a_flag() {
-    let mut scene = Scene::load("circle", METHODS).unwrap();
-    scene.run.step = -1.0;
-    let error = scene.with_overrides(Some("rk4"), None, None, None, METHODS).unwrap_err();
+    let mut scene = AnyScene::load("circle", METHODS).unwrap();
+    scene.run_mut().step = -1.0;
+    let overrides = Overrides { method: Some("rk4"), ..Overrides::default() };
+    let error = scene.with_overrides(&overrides, METHODS).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("`run.step`") && text.contains("circle") && !text.contains("--"), "{text}");
 }

@@ -1,14 +1,14 @@
 //! Settings of the command line in the text of a scene.
 
 use proptest::prelude::*;
-use scene::{Scene, SceneError, Setting};
+use scene::{Overrides, Scene, SceneError, Setting};
 use std::fs;
 
 const METHODS: &[&str] = &["dla", "rk4"];
 
 fn set(scene: &str, settings: &[&str]) -> Result<Scene, SceneError> {
     let settings: Vec<Setting> = settings.iter().map(|text| text.parse().unwrap()).collect();
-    Scene::load_with(scene, &settings, METHODS)
+    Scene::load_with(scene, &settings, &Overrides::default(), METHODS)
 }
 
 /// What is written where the key is and what is read there.
@@ -88,7 +88,7 @@ proptest! {
     #[test]
     fn any_setting_is_read_or_refused(key in "[a-z0-9._' \"\\[]{0,20}", value in "\\PC{0,20}") {
         if let Ok(setting) = format!("{key}={value}").parse::<Setting>() {
-            let _ = Scene::load_with("bowl", &[setting], METHODS);
+            let _ = Scene::load_with("bowl", &[setting], &Overrides::default(), METHODS);
         }
     }
 
@@ -96,7 +96,7 @@ proptest! {
     #[test]
     fn numbers_are_those_that_were_written(x in -1e150..1e150_f64) {
         let setting: Setting = format!("start.x={x:?}").parse().unwrap();
-        let scene = Scene::load_with("bowl", &[setting], METHODS).unwrap();
+        let scene = Scene::load_with("bowl", &[setting], &Overrides::default(), METHODS).unwrap();
         prop_assert_eq!(scene.start.x.to_bits(), x.to_bits());
     }
 }

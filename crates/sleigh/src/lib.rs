@@ -9,7 +9,6 @@
 mod bodies;
 mod body;
 mod centre_of_mass;
-mod checks;
 pub mod closed;
 pub mod effects;
 mod error;
@@ -17,18 +16,14 @@ mod exact;
 pub mod parking;
 pub mod planimeter;
 pub mod series;
-mod sleigh_body;
-mod state;
 mod system;
 mod time_function;
 
-pub use bodies::{ClosedPath, Flywheel, Guide, Guided};
-pub use body::Sleigh;
+pub use bodies::{ClosedPath, Flywheel, Guide, Guided, PathShape, Polygon};
+pub use body::{Sleigh, SleighBody, SleighState};
 pub use centre_of_mass::CentreOfMass;
 pub use closed::ClosedMap;
 pub use error::SleighError;
 pub use exact::Exact;
 pub use series::Taylor;
-pub use sleigh_body::SleighBody;
-pub use state::SleighState;
 pub use time_function::{Formula, Pulses, Ramp, Table, TimeFunction};

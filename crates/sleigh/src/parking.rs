@@ -1,6 +1,6 @@
 //! Controls of drive and turn that bring the sleigh to a pose: what its brackets promise, made.
 
-use crate::checks::{finite, positive};
+use crate::error::{finite, positive};
 use crate::planimeter::wrapped;
 use crate::{Pulses, SleighError, SleighState, TimeFunction};
 use std::f64::consts::FRAC_PI_2;

@@ -1,4 +1,4 @@
-use lagrangian::{Constraint, Piecewise, Scalar, System};
+use lagrangian::{Constraint, Scalar, System};
 
 /// A blade or an axle without mass under a body, at a point of its axis and along it: it does not slip aside.
 ///
@@ -51,17 +51,5 @@ impl System<4, 1> for SteeredBlade {
     #[inline(always)]
     fn angles(&self) -> [bool; 4] {
         [false, false, true, false]
-    }
-}
-
-impl Piecewise for Blade {
-    fn piece(&self, _t: f64) -> Self {
-        *self
-    }
-}
-
-impl Piecewise for SteeredBlade {
-    fn piece(&self, _t: f64) -> Self {
-        *self
     }
 }

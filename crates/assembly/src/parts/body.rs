@@ -1,4 +1,4 @@
-use lagrangian::{Constraint, Piecewise, Scalar, System};
+use lagrangian::{Constraint, Scalar, System};
 
 /// A free rigid body of the plane, `q = (x, y, theta)` its mass centre (m) and heading (rad).
 ///
@@ -52,17 +52,5 @@ impl System<1, 0> for RotorElement {
     #[inline(always)]
     fn angles(&self) -> [bool; 1] {
         [false]
-    }
-}
-
-impl Piecewise for Body {
-    fn piece(&self, _t: f64) -> Self {
-        *self
-    }
-}
-
-impl Piecewise for RotorElement {
-    fn piece(&self, _t: f64) -> Self {
-        *self
     }
 }

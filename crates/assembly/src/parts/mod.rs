@@ -2,12 +2,24 @@
 
 mod blade;
 mod body;
-mod hinge;
-mod motor;
+mod joints;
 mod train;
 
 pub use blade::{Blade, SteeredBlade};
 pub use body::{Body, RotorElement};
-pub use hinge::Hinge;
-pub use motor::Motor;
+pub use joints::{Hinge, Motor};
 pub use train::{Trailer, Train};
+
+use lagrangian::Piecewise;
+
+/// Parts that never jump.
+macro_rules! smooth {
+    ($($part:ty),+) => {
+        $(impl Piecewise for $part {
+            fn piece(&self, _t: f64) -> Self {
+                *self
+            }
+        })+
+    };
+}
+smooth!(Blade, Body, RotorElement, SteeredBlade);

@@ -9,7 +9,9 @@
 //! ```
 
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
-use scene::{Interpolation, PathShape, PathSpec, Scene, SceneEffect, TimeSpec};
+use scene::{AnyEffect, Rotor, Scene, SceneEffect};
+use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
+use sleigh::{ClosedPath, PathShape, TimeFunction};
 use std::array::from_fn;
 use std::f64::consts::TAU;
 
@@ -17,51 +19,53 @@ use std::f64::consts::TAU;
 pub type Place = [f64; 7];
 
 /// Value, first and second derivative on the piece that holds at `middle`.
-fn function(spec: &TimeSpec, t: f64, middle: f64) -> [f64; 3] {
-    match spec {
-        TimeSpec::Constant(value) => [*value, 0.0, 0.0],
-        TimeSpec::Sine { amplitude, frequency, phase } => {
+fn function(function: &TimeFunction, t: f64, middle: f64) -> [f64; 3] {
+    let of_points = |times: &[f64], values: &[f64], linear: bool| {
+        let Some(i) = times.iter().rposition(|time| *time <= middle) else { return [values[0], 0.0, 0.0] };
+        let rises = linear && i + 1 < times.len();
+        let slope = if rises { (values[i + 1] - values[i]) / (times[i + 1] - times[i]) } else { 0.0 };
+        [values[i] + slope * (t - times[i]), slope, 0.0]
+    };
+    match function {
+        TimeFunction::Constant(value) => [*value, 0.0, 0.0],
+        TimeFunction::Sine { amplitude, frequency, phase } => {
             let (sin, cos) = (frequency * t + phase).sin_cos();
             [amplitude * sin, amplitude * frequency * cos, -amplitude * frequency * frequency * sin]
         }
-        TimeSpec::Table { times, values, interpolation } => {
-            let Some(i) = times.iter().rposition(|time| *time <= middle) else { return [values[0], 0.0, 0.0] };
-            let slope = match interpolation {
-                Interpolation::Linear if i + 1 < times.len() => (values[i + 1] - values[i]) / (times[i + 1] - times[i]),
-                _ => 0.0,
-            };
-            [values[i] + slope * (t - times[i]), slope, 0.0]
-        }
-        TimeSpec::Formula(text) if text == "0.4*t*exp(-t)" => {
+        TimeFunction::Table(table) => of_points(table.times(), table.values(), false),
+        TimeFunction::Ramp(ramp) => of_points(ramp.times(), ramp.values(), true),
+        TimeFunction::Formula(formula) if formula.text() == "0.4*t*exp(-t)" => {
             let decay = 0.4 * (-t).exp();
             [t * decay, (1.0 - t) * decay, (t - 2.0) * decay]
         }
         // Not written by hand, and so in agreement with nothing.
-        TimeSpec::Formula(_) => [f64::NAN; 3],
+        TimeFunction::Formula(_) | TimeFunction::Pulses(_) => [f64::NAN; 3],
     }
 }
 
-fn path_velocity(path: &PathSpec, t: f64, middle: f64) -> [f64; 2] {
-    match &path.shape {
+fn path_velocity(path: &ClosedPath, t: f64, middle: f64) -> [f64; 2] {
+    let period = path.period();
+    match path.shape() {
         PathShape::Circle { radius, .. } => {
-            let rate = TAU / path.period;
+            let rate = TAU / period;
             let (sin, cos) = (rate * t).sin_cos();
             [-radius * rate * sin, radius * rate * cos]
         }
-        PathShape::Polygon(vertices) => {
+        PathShape::Polygon(polygon) => {
+            let vertices = polygon.vertices();
             let edge = |k: usize| {
                 let (a, b) = (vertices[k % vertices.len()], vertices[(k + 1) % vertices.len()]);
                 [b[0] - a[0], b[1] - a[1]]
             };
             let length = |k: usize| f64::hypot(edge(k)[0], edge(k)[1]);
             let whole: f64 = (0..vertices.len()).map(length).sum();
-            let mut left = (middle / path.period).fract() * whole;
+            let mut left = (middle / period).fract() * whole;
             let mut k = 0;
             while left > length(k) {
                 left -= length(k);
                 k += 1;
             }
-            edge(k).map(|d| d / length(k) * whole / path.period)
+            edge(k).map(|d| d / length(k) * whole / period)
         }
     }
 }
@@ -117,19 +121,19 @@ fn terms(scene: &Scene, t: f64, middle: f64, &[x, y, theta, u, omega, ..]: &Plac
     let [mut along, mut turning] = [m * (omega * s + a * omega * omega), -m * a * (s_rate + u * omega)];
     for effect in &scene.effects {
         match effect {
-            SceneEffect::Slope { gravity } => {
+            SceneEffect::Acting(AnyEffect::Slope(Slope { gravity })) => {
                 fx += m * gravity[0];
                 fy += m * gravity[1];
             }
-            SceneEffect::Bowl { stiffness, center } => {
+            SceneEffect::Acting(AnyEffect::Bowl(Bowl { stiffness, center })) => {
                 fx -= stiffness[0] * (cx - center[0]);
                 fy -= stiffness[1] * (cy - center[1]);
             }
-            SceneEffect::EggCrate { height, wave_number: [kx, ky] } => {
+            SceneEffect::Acting(AnyEffect::EggCrate(EggCrate { height, wave_number: [kx, ky] })) => {
                 fx += height * kx * (kx * cx).sin();
                 fy += height * ky * (ky * cy).sin();
             }
-            SceneEffect::Hills { hills } => {
+            SceneEffect::Acting(AnyEffect::Hills(Hills { hills })) => {
                 for hill in hills {
                     let (dx, dy, square) = (cx - hill.x, cy - hill.y, hill.width * hill.width);
                     let steep = hill.height * (-(dx * dx + dy * dy) / (2.0 * square)).exp() / square;
@@ -137,21 +141,26 @@ fn terms(scene: &Scene, t: f64, middle: f64, &[x, y, theta, u, omega, ..]: &Plac
                     fy += steep * dy;
                 }
             }
-            SceneEffect::Drag { along: c_u, turning: c_omega } => {
+            SceneEffect::Acting(AnyEffect::Drag(Drag { along: c_u, turning: c_omega })) => {
                 along -= c_u * u;
                 turning -= c_omega * omega;
             }
-            SceneEffect::QuadraticDrag { along: c_u, turning: c_omega } => {
+            SceneEffect::Acting(AnyEffect::QuadraticDrag(QuadraticDrag { along: c_u, turning: c_omega })) => {
                 along -= c_u * u * u.abs();
                 turning -= c_omega * omega * omega.abs();
             }
-            SceneEffect::Friction { along: force, smoothing, turning: torque, turning_smoothing } => {
+            SceneEffect::Acting(AnyEffect::Friction(Friction {
+                along: force,
+                smoothing,
+                turning: torque,
+                turning_smoothing,
+            })) => {
                 along -= force * (u / smoothing).tanh();
                 turning -= torque * (omega / turning_smoothing).tanh();
             }
-            SceneEffect::Thrust { force } => along += function(force, t, middle)[0],
-            SceneEffect::Torque { torque } => turning += function(torque, t, middle)[0],
-            SceneEffect::MovingMass { mass, x, y } => {
+            SceneEffect::Acting(AnyEffect::Thrust(Thrust { force })) => along += function(force, t, middle)[0],
+            SceneEffect::Acting(AnyEffect::Torque(Torque { torque })) => turning += function(torque, t, middle)[0],
+            SceneEffect::MovingMass(MovingMass { mass, x, y }) => {
                 let ([rx, dx, ddx], [ry, dy, ddy]) = (function(x, t, middle), function(y, t, middle));
                 let along_e = -omega * s - rx * omega * omega - 2.0 * omega * dy + ddx;
                 let along_n = s_rate + omega * u - ry * omega * omega + 2.0 * omega * dx + ddy;
@@ -162,7 +171,7 @@ fn terms(scene: &Scene, t: f64, middle: f64, &[x, y, theta, u, omega, ..]: &Plac
                 all.mass[2] += mass * (rx * rx + ry * ry);
                 all.lateral[1] += mass * rx;
             }
-            SceneEffect::Flywheel { inertia, torque: Some(torque), .. } => {
+            SceneEffect::Flywheel(Rotor { inertia, torque: Some(torque), .. }) => {
                 let torque = function(torque, t, middle)[0];
                 turning -= torque;
                 all.rotor = torque / inertia;
@@ -211,7 +220,7 @@ fn after_jump(scene: &Scene, t: f64, before: f64, middle: f64, place: &mut Place
 fn start(scene: &Scene, middle: f64) -> Place {
     let at = scene.start;
     let rotor = scene.effects.iter().find_map(|effect| match effect {
-        SceneEffect::Flywheel { rotor_rate, .. } => Some(*rotor_rate),
+        SceneEffect::Flywheel(Rotor { rate, .. }) => Some(*rate),
         _ => None,
     });
     let mut place = [at.x, at.y, at.heading, at.speed, at.turn_rate, 0.0, 0.0];
@@ -258,7 +267,7 @@ pub fn motion(scene: &Scene, jumps: &[f64], end: f64, h: f64) -> [f64; 7] {
     let rates = rates(scene, end, before, &place);
     let imposed = terms(scene, end, before, &place).imposed;
     let u = imposed[0].map_or(place[3], |[u, _]| u);
-    let rotor = scene.effects.iter().any(|effect| matches!(effect, SceneEffect::Flywheel { .. }));
+    let rotor = scene.effects.iter().any(|effect| matches!(effect, SceneEffect::Flywheel(Rotor { .. })));
     let [psi, psi_rate] = if rotor { [place[5], rates[5]] } else { [0.0; 2] };
     [place[0], place[1], place[2], u, rates[2], psi, psi_rate]
 }

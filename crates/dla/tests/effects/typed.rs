@@ -3,49 +3,9 @@
 use crate::effects::tools::{Laden, laden, run};
 use dla::{Composition, Dla, Schedule};
 use lagrangian::{Piecewise, System};
-use scene::{AnyEffect, Interpolation, Scene, SceneEffect, TimeSpec};
-use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
-use sleigh::{Flywheel, Formula, Guide, Guided, Ramp, Table, TimeFunction};
-
-fn function(spec: &TimeSpec) -> TimeFunction {
-    match spec {
-        TimeSpec::Constant(value) => TimeFunction::Constant(*value),
-        TimeSpec::Sine { amplitude, frequency, phase } => {
-            TimeFunction::Sine { amplitude: *amplitude, frequency: *frequency, phase: *phase }
-        }
-        TimeSpec::Table { times, values, interpolation: Interpolation::Steps } => {
-            TimeFunction::Table(Table::new(times.clone(), values.clone()).unwrap())
-        }
-        TimeSpec::Table { times, values, interpolation: Interpolation::Linear } => {
-            TimeFunction::Ramp(Ramp::new(times.clone(), values.clone()).unwrap())
-        }
-        TimeSpec::Formula(text) => TimeFunction::Formula(Formula::new(text).unwrap()),
-    }
-}
-
-/// An effect that acts by a potential or a force.
-fn acting(effect: &SceneEffect) -> Option<AnyEffect> {
-    Some(match effect {
-        SceneEffect::Slope { gravity } => AnyEffect::Slope(Slope::new(*gravity).unwrap()),
-        SceneEffect::Bowl { stiffness, center } => AnyEffect::Bowl(Bowl::new(*stiffness, *center).unwrap()),
-        SceneEffect::EggCrate { height, wave_number } => {
-            AnyEffect::EggCrate(EggCrate::new(*height, *wave_number).unwrap())
-        }
-        SceneEffect::Hills { hills } => {
-            AnyEffect::Hills(Hills::new(hills.iter().copied().map(Into::into).collect()).unwrap())
-        }
-        SceneEffect::Drag { along, turning } => AnyEffect::Drag(Drag::new(*along, *turning).unwrap()),
-        SceneEffect::QuadraticDrag { along, turning } => {
-            AnyEffect::QuadraticDrag(QuadraticDrag::new(*along, *turning).unwrap())
-        }
-        SceneEffect::Friction { along, smoothing, turning, turning_smoothing } => {
-            AnyEffect::Friction(Friction::new(*along, *smoothing, *turning, *turning_smoothing).unwrap())
-        }
-        SceneEffect::Thrust { force } => AnyEffect::Thrust(Thrust::new(function(force)).unwrap()),
-        SceneEffect::Torque { torque } => AnyEffect::Torque(Torque::new(function(torque)).unwrap()),
-        _ => return None,
-    })
-}
+use scene::{Rotor, Scene, SceneEffect};
+use sleigh::effects::MovingMass;
+use sleigh::{Flywheel, Guide, Guided};
 
 /// The run of a scene from its start, and the configuration and velocity at its end.
 pub struct Run<'a> {
@@ -60,7 +20,7 @@ impl Run<'_> {
         let sleigh = self.scene.sleigh;
         let effects = || self.scene.effects.iter();
         let mass = |effect: &_| match effect {
-            SceneEffect::MovingMass { mass, x, y } => Some(MovingMass::new(*mass, function(x), function(y)).unwrap()),
+            SceneEffect::MovingMass(mass) => Some(MovingMass::clone(mass)),
             _ => None,
         };
         let masses: Vec<MovingMass> = effects().filter_map(mass).collect();
@@ -73,17 +33,17 @@ impl Run<'_> {
         let guided = effects().find(|effect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. }));
         match guided {
             Some(SceneEffect::Servo { speed: Some(speed), turn_rate: Some(turn_rate) }) => {
-                let body = Guided::<2>::servo(sleigh, function(speed), function(turn_rate)).unwrap();
+                let body = Guided::<2>::servo(sleigh, speed.clone(), turn_rate.clone()).unwrap();
                 self.of(body.on_turntable(on_plane).unwrap().carrying(masses))
             }
             Some(SceneEffect::Servo { speed: Some(speed), .. }) => {
-                self.of(one(Guide::Speed(function(speed))).on_turntable(on_plane).unwrap().carrying(masses))
+                self.of(one(Guide::Speed(speed.clone())).on_turntable(on_plane).unwrap().carrying(masses))
             }
             Some(SceneEffect::Servo { turn_rate: Some(rate), .. }) => {
-                self.of(one(Guide::TurnRate(function(rate))).on_turntable(on_plane).unwrap().carrying(masses))
+                self.of(one(Guide::TurnRate(rate.clone())).on_turntable(on_plane).unwrap().carrying(masses))
             }
             Some(SceneEffect::Tracer { path }) => {
-                let body = Guided::<2>::tracer(sleigh, path.build().unwrap()).unwrap();
+                let body = Guided::<2>::tracer(sleigh, path.clone()).unwrap();
                 self.of(body.on_turntable(on_plane).unwrap().carrying(masses))
             }
             _ if rate.is_none() && masses.is_empty() => self.of(sleigh),
@@ -97,9 +57,10 @@ impl Run<'_> {
         Laden<B>: System<3, M> + Piecewise,
         Laden<Flywheel<B>>: System<4, M> + Piecewise,
     {
+        let acting = |effect: &_| if let SceneEffect::Acting(effect) = effect { Some(effect.clone()) } else { None };
         let effects = self.scene.effects.iter().filter_map(acting).collect();
         let rotor = self.scene.effects.iter().find_map(|effect| match effect {
-            SceneEffect::Flywheel { inertia, torque, .. } => Some((*inertia, torque.as_ref().map(function))),
+            SceneEffect::Flywheel(Rotor { inertia, torque, .. }) => Some((*inertia, torque.clone())),
             _ => None,
         });
         match rotor {

@@ -3,11 +3,11 @@
 mod sleigh;
 mod text;
 
+use crate::systems::{Column, SceneSystem, Started};
 use ::text::{TextMechanics, TextStart};
 use assembly::parts::Train;
 use dla::{Mechanism, Node, Size};
 use std::fmt;
-use systems::{Column, SceneSystem, Started};
 
 pub use self::sleigh::{QUANTITIES, SleighQuantity};
 pub use self::text::quantities as text_quantities;

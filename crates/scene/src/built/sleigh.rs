@@ -1,8 +1,8 @@
 //! Sleighs in the words of their scenes.
 
 use super::{Quantity, StartPlace};
+use crate::systems::SceneSystem;
 use ::sleigh::SleighState;
-use systems::SceneSystem;
 
 /// Where a sleigh is, how it moves, and where its centre of mass is (m).
 type Seen = (SleighState, [f64; 2]);

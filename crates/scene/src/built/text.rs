@@ -1,9 +1,9 @@
 //! Systems of text in the words of their scenes.
 
 use super::{Quantity, StartPlace};
+use crate::systems::Column;
 use ::text::{Coordinate, TextMechanics, TextModel, Unit};
 use dla::{Node, Size};
-use systems::Column;
 
 /// The quantities of a system of text: coordinates, rates and outputs.
 #[must_use]

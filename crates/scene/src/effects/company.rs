@@ -1,11 +1,9 @@
 //! What effects of a scene do not go with each other, or with the sleigh.
 
-use super::effect::SceneEffect;
-use super::specs::TimeSpec;
-use super::table::EffectInfo;
+use super::{EffectInfo, SceneEffect};
 use crate::error::SceneError;
 use crate::table::TomlTable;
-use sleigh::Sleigh;
+use sleigh::{Sleigh, TimeFunction};
 
 /// Refuses imposed velocities whose kinetic energy is too large for a number.
 pub(super) fn check_energy(table: &TomlTable<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Result<(), SceneError> {
@@ -14,7 +12,7 @@ pub(super) fn check_energy(table: &TomlTable<'_>, effect: &SceneEffect, sleigh: 
     for (key, function, mass, unit) in
         [("speed", speed, sleigh.mass(), "m/s"), ("turn_rate", turn_rate, inertia, "rad/s")]
     {
-        let largest = function.as_ref().map_or(0.0, TimeSpec::largest);
+        let largest = function.as_ref().map_or(0.0, TimeFunction::largest);
         if !(0.5 * mass * largest * largest).is_finite() {
             let most = (f64::MAX / mass.max(1.0)).sqrt();
             let accepted = format!("values from -L to L with L = {most:.3e}, in {unit}");
@@ -42,14 +40,6 @@ pub(super) fn check_company(
     if matches!(new, SceneEffect::Tracer { .. }) && offset == 0.0 {
         let problem = "cannot lead a centre of mass that lies at the blade, since the blade does not move sideways";
         return Err(table.wrong("kind", problem, "a `tracer` where `sleigh.offset` is not 0".to_owned()));
-    }
-    if let SceneEffect::MovingMass { x, y, .. } = new {
-        for (key, function) in [("x", x), ("y", y)] {
-            if function.has_corners() {
-                let accepted = "a number, `{amplitude, frequency, phase}` or a smooth formula in `t`, in m".to_owned();
-                return Err(table.wrong(key, "would make the mass or its velocity jump", accepted));
-            }
-        }
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ pub use self::start::Given;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::scene::{name_of, one_line, opened};
+use crate::scene::{name_of, one_line};
 use crate::table::TomlTable;
 use crate::{BuiltScene, Overrides, RunSettings, Scene};
 use ::sleigh::SleighError;
@@ -76,64 +76,32 @@ pub enum BuildError {
 }
 
 impl AnyScene {
-    /// Reads a scene from text, as [`Scene::parse`].
-    ///
-    /// # Errors
-    /// [`SceneError`] with the first thing that is wrong with the text.
-    pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        Self::parse_with(text, origin, methods, &Overrides::default())
-    }
-
-    /// Parses a scene and replaces settings of its run. Consistency is checked after the replacement.
-    ///
-    /// # Errors
-    /// As [`parse`](Self::parse), and as [`with_overrides`](Self::with_overrides).
-    pub fn parse_with(
-        text: &str,
-        origin: &str,
+    /// The scene of the tables of its text.
+    pub(crate) fn of(
+        document: Document<'_>,
+        entries: &DeTable<'_>,
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
-        opened(text, origin, |document, entries| {
-            Ok(if entries.contains_key("system") {
-                Self::Text(Box::new(TextScene::of(document, entries, methods, overrides)?))
-            } else {
-                Self::Sleigh(Box::new(Scene::of(document, entries, methods, overrides)?))
-            })
+        Ok(if entries.contains_key("system") {
+            Self::Text(Box::new(TextScene::of(document, entries, methods, overrides)?))
+        } else {
+            Self::Sleigh(Box::new(Scene::of(document, entries, methods, overrides)?))
         })
     }
 
-    /// Reads the bundled scene of that name or else the file at that path, as [`Scene::load`].
+    /// The scene with the given settings of its run replaced.
     ///
     /// # Errors
-    /// As [`Scene::load`].
-    pub fn load(name_or_path: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        Self::load_with(name_or_path, &[], methods)
-    }
-
-    /// The scene with other settings of its run, as [`Scene::with_overrides`].
-    ///
-    /// # Errors
-    /// As [`Scene::with_overrides`].
-    pub fn with_overrides(
-        self,
-        method: Option<&str>,
-        step: Option<f64>,
-        duration: Option<f64>,
-        alpha: Option<f64>,
-        methods: &[&str],
-    ) -> Result<Self, SceneError> {
-        Ok(match self {
-            Self::Sleigh(scene) => {
-                Self::Sleigh(Box::new(scene.with_overrides(method, step, duration, alpha, methods)?))
-            }
-            Self::Text(mut scene) => {
-                let overrides = Overrides { method, step, duration, alpha };
-                let outcome = scene.run.replace(&overrides, methods).and_then(|()| scene.too_many_jumps());
-                outcome.map_err(|fault| overrides.error(fault, &scene.name))?;
-                Self::Text(scene)
-            }
-        })
+    /// [`SceneError`] when the settings are not valid together, as for a file; its field is the flag `--method`,
+    /// `--step`, `--duration` or `--alpha` of a setting given here, its origin `command line`.
+    pub fn with_overrides(mut self, overrides: &Overrides<'_>, methods: &[&str]) -> Result<Self, SceneError> {
+        let outcome = self.run_mut().replace(overrides, methods).and_then(|()| match &self {
+            Self::Sleigh(scene) => scene.too_many_jumps(),
+            Self::Text(scene) => scene.too_many_jumps(),
+        });
+        outcome.map_err(|fault| overrides.error(fault, self.name()))?;
+        Ok(self)
     }
 
     /// The bundled name, or the file's name without directory and ending.
@@ -222,27 +190,6 @@ impl AnyScene {
 }
 
 impl TextScene {
-    /// Reads a scene of a system of text.
-    ///
-    /// # Errors
-    /// [`SceneError`] with the first thing that is wrong, at its place.
-    pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        Self::parse_with(text, origin, methods, &Overrides::default())
-    }
-
-    /// Parses a scene and replaces settings of its run. Consistency is checked after the replacement.
-    ///
-    /// # Errors
-    /// As [`parse`](Self::parse).
-    pub fn parse_with(
-        text: &str,
-        origin: &str,
-        methods: &[&str],
-        overrides: &Overrides<'_>,
-    ) -> Result<Self, SceneError> {
-        opened(text, origin, |document, entries| Self::of(document, entries, methods, overrides))
-    }
-
     fn of(
         document: Document<'_>,
         entries: &DeTable<'_>,

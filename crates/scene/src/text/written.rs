@@ -8,7 +8,7 @@ struct WrittenTextFile<'s> {
     title: &'s str,
     system: WrittenSystem<'s>,
     start: WrittenTable<'s, f64>,
-    run: crate::written::RunTable<'s>,
+    run: &'s crate::RunSettings,
 }
 
 #[derive(Serialize)]
@@ -73,7 +73,7 @@ impl TextScene {
                 outputs: formulas(&words.outputs),
             },
             start: WrittenTable(state.zip(start.q.iter().chain(&start.v).copied()).collect()),
-            run: crate::written::RunTable::of(run),
+            run,
         })
     }
 }

@@ -1,7 +1,8 @@
 //! Sweeps: the numbers of members, what is drawn, and what is wrong with a file.
 
 use approx::assert_abs_diff_eq;
-use scene::{AnyScene, Scene, SceneEffect, Sweep};
+use scene::{AnyEffect, AnyScene, Scene, SceneEffect, Sweep};
+use sleigh::effects::Bowl;
 
 const METHODS: [&str; 2] = ["dla", "gauss16"];
 
@@ -39,7 +40,7 @@ fn members_are_made_from_their_numbers() {
     for member in 0..sweep.count() {
         let AnyScene::Sleigh(scene) = sweep.member(member, &METHODS).unwrap() else { panic!("a sleigh") };
         let Scene { sleigh, start, effects, .. } = *scene;
-        let SceneEffect::Bowl { stiffness, .. } = effects[0] else { panic!("a bowl") };
+        let SceneEffect::Acting(AnyEffect::Bowl(Bowl { stiffness, .. })) = effects[0] else { panic!("a bowl") };
         let found = [sleigh.offset(), start.speed, stiffness[1], start.turn_rate];
         assert_eq!(found.map(f64::to_bits)[..], sweep.values(member).iter().map(|x| x.to_bits()).collect::<Vec<_>>());
         assert!((0.1..0.2).contains(&start.turn_rate) && (0.4..0.6).contains(&stiffness[1]));

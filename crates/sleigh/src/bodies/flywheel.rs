@@ -1,4 +1,4 @@
-use crate::checks::positive;
+use crate::error::positive;
 use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, ReducedError, Scalar, System, velocity_of};
 

@@ -1,5 +1,5 @@
-use crate::checks::finite;
 use crate::effects::MovingMass;
+use crate::error::finite;
 use crate::{ClosedPath, Sleigh, SleighBody, SleighError, TimeFunction};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System, called};
 

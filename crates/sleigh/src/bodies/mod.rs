@@ -8,7 +8,7 @@ mod path;
 
 pub use flywheel::Flywheel;
 pub use guided::{Guide, Guided};
-pub use path::ClosedPath;
+pub use path::{ClosedPath, PathShape, Polygon};
 
 use crate::Sleigh;
 use lagrangian::Piecewise;

@@ -65,7 +65,7 @@ impl<S: Scalar> Moments<S> {
 
     #[inline(always)]
     fn with(self, moving: &MovingMass, t: S) -> Self {
-        let m = moving.mass();
+        let m = moving.mass;
         let [[x, y], [vx, vy], [ax, ay]] = moving.path(t);
         Self {
             mass: self.mass + m,

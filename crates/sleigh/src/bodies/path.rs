@@ -1,29 +1,52 @@
 use crate::SleighError;
-use crate::checks::{finite, positive};
+use crate::error::{finite, positive};
 use crate::planimeter::{Holonomy, Leg, of_legs};
 use lagrangian::{Piecewise, Scalar};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// A closed path that a point runs once in every period, at constant speed: a circle, or a polygon.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClosedPath {
-    shape: ClosedShape,
+    #[serde(flatten)]
+    shape: PathShape,
     period: f64,
 }
 
-#[derive(Debug, Clone, PartialEq)]
-enum ClosedShape {
+/// The shape of a closed path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PathShape {
+    /// A circle, counterclockwise from `center + (radius, 0)`.
     Circle {
+        /// Radius (m).
         radius: f64,
+        /// Middle (m).
         center: [f64; 2],
     },
-    Polygon {
-        vertices: Vec<[f64; 2]>,
-        /// When each edge begins, as a fraction of the period; one more entry for the end.
-        begins: Vec<f64>,
-        /// The edge on which the point is.
-        current: usize,
-    },
+    /// A polygon, from its first vertex.
+    Polygon(Polygon),
+}
+
+/// A polygon that a point runs along.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Polygon {
+    vertices: Vec<[f64; 2]>,
+    /// When each edge begins, as a fraction of the period; one more entry for the end.
+    #[serde(skip)]
+    begins: Vec<f64>,
+    /// The edge on which the point is.
+    #[serde(skip)]
+    current: usize,
+}
+
+impl Polygon {
+    /// The vertices (m), in their order.
+    #[must_use]
+    pub fn vertices(&self) -> &[[f64; 2]] {
+        &self.vertices
+    }
 }
 
 impl ClosedPath {
@@ -35,7 +58,7 @@ impl ClosedPath {
         positive("radius", radius)?;
         positive("period", period)?;
         finite("center", center)?;
-        Ok(Self { shape: ClosedShape::Circle { radius, center }, period })
+        Ok(Self { shape: PathShape::Circle { radius, center }, period })
     }
 
     /// The polygon with these vertices (m), in their order and back to the first.
@@ -67,15 +90,34 @@ impl ClosedPath {
         for begin in &mut begins {
             *begin /= length;
         }
-        Ok(Self { shape: ClosedShape::Polygon { vertices, begins, current: 0 }, period })
+        Ok(Self { shape: PathShape::Polygon(Polygon { vertices, begins, current: 0 }), period })
     }
 
     /// Where the path begins at `t = 0` (m).
     #[must_use]
     pub fn start(&self) -> [f64; 2] {
         match &self.shape {
-            ClosedShape::Circle { radius, center } => [center[0] + radius, center[1]],
-            ClosedShape::Polygon { vertices, .. } => vertices[0],
+            PathShape::Circle { radius, center } => [center[0] + radius, center[1]],
+            PathShape::Polygon(Polygon { vertices, .. }) => vertices[0],
+        }
+    }
+
+    /// What is run through.
+    #[must_use]
+    pub fn shape(&self) -> &PathShape {
+        &self.shape
+    }
+
+    /// The path with all lengths of its shape times a factor; a circle keeps its middle.
+    ///
+    /// # Errors
+    /// As [`circle`](Self::circle) and [`polygon`](Self::polygon).
+    pub fn scaled(&self, factor: f64) -> Result<Self, SleighError> {
+        match &self.shape {
+            PathShape::Circle { radius, center } => Self::circle(radius * factor, *center, self.period),
+            PathShape::Polygon(Polygon { vertices, .. }) => {
+                Self::polygon(vertices.iter().map(|vertex| vertex.map(|x| x * factor)).collect(), self.period)
+            }
         }
     }
 
@@ -89,8 +131,8 @@ impl ClosedPath {
     #[must_use]
     pub fn area(&self) -> f64 {
         match &self.shape {
-            ClosedShape::Circle { radius, .. } => 0.5 * TAU * radius * radius,
-            ClosedShape::Polygon { vertices, .. } => {
+            PathShape::Circle { radius, .. } => 0.5 * TAU * radius * radius,
+            PathShape::Polygon(Polygon { vertices, .. }) => {
                 let twice = |k: usize| {
                     let (a, b) = (vertices[k], vertices[(k + 1) % vertices.len()]);
                     a[0] * b[1] - b[0] * a[1]
@@ -104,8 +146,8 @@ impl ClosedPath {
     #[must_use]
     pub fn legs(&self) -> Vec<Leg> {
         match &self.shape {
-            ClosedShape::Circle { radius, .. } => vec![Leg::Arc { radius: *radius, from: 0.0, by: TAU }],
-            ClosedShape::Polygon { vertices, .. } => {
+            PathShape::Circle { radius, .. } => vec![Leg::Arc { radius: *radius, from: 0.0, by: TAU }],
+            PathShape::Polygon(Polygon { vertices, .. }) => {
                 let next = |k: usize| vertices[(k + 1) % vertices.len()];
                 let edges = vertices.iter().enumerate();
                 edges.map(|(k, from)| Leg::Segment([next(k)[0] - from[0], next(k)[1] - from[1]])).collect()
@@ -125,12 +167,12 @@ impl ClosedPath {
     #[inline(always)]
     pub fn velocity<S: Scalar>(&self, t: S) -> [S; 2] {
         match &self.shape {
-            ClosedShape::Circle { radius, .. } => {
+            PathShape::Circle { radius, .. } => {
                 let rate = TAU / self.period;
                 let (sin, cos) = (t * rate).sin_cos();
                 [sin * (-radius * rate), cos * (radius * rate)]
             }
-            ClosedShape::Polygon { vertices, begins, current } => {
+            PathShape::Polygon(Polygon { vertices, begins, current }) => {
                 let (from, to) = (vertices[*current], vertices[(current + 1) % vertices.len()]);
                 let time = (begins[current + 1] - begins[*current]) * self.period;
                 [0, 1].map(|i| S::constant((to[i] - from[i]) / time))
@@ -141,7 +183,7 @@ impl ClosedPath {
 
 impl Piecewise for ClosedPath {
     fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
-        let ClosedShape::Polygon { begins, .. } = &self.shape else {
+        let PathShape::Polygon(Polygon { begins, .. }) = &self.shape else {
             return Vec::new();
         };
         let (first, last) = ((from / self.period).floor(), (to / self.period).ceil());
@@ -157,7 +199,7 @@ impl Piecewise for ClosedPath {
 
     fn piece(&self, t: f64) -> Self {
         let mut piece = self.clone();
-        if let ClosedShape::Polygon { begins, current, vertices } = &mut piece.shape {
+        if let PathShape::Polygon(Polygon { begins, current, vertices }) = &mut piece.shape {
             let fraction = (t / self.period).rem_euclid(1.0);
             let begun = begins.partition_point(|begin| *begin <= fraction);
             *current = begun.saturating_sub(1).min(vertices.len() - 1);

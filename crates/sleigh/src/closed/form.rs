@@ -1,8 +1,7 @@
-use super::push::Pushing;
-use super::{ClosedStart, ClosedStep, Push, free, pushed};
+use super::{Memory, free, pushed};
 use crate::{Flywheel, Guided, Sleigh};
 use dla::ClosedStepError;
-use lagrangian::{Effect, System, With};
+use lagrangian::{Effect, Scalar, System, With, called};
 
 /// A body whose step by the midpoint discrete Lagrange-d'Alembert map may be known in closed form.
 ///
@@ -25,18 +24,21 @@ pub trait ClosedForm<const N: usize, const M: usize>: System<N, M> {
         false
     }
 
-    /// The closed step with one more generalised force, taken in the middle of the step at the mean velocity.
+    /// The closed step under effects, whose force is taken in the middle of the step at the mean velocity.
     ///
     /// Returns `None`, so that the general step is made, if the force is not known by hand, the solution is not found quickly, or the
     /// force may overshoot.
     #[inline(always)]
-    fn pushed_step<P: Push<N>>(
+    fn pushed_step<E: Effect<Self, N>>(
         &self,
         _t: f64,
         _h: f64,
         _start: ClosedStart<'_, N>,
-        _push: &P,
-    ) -> Option<ClosedStep<N, M>> {
+        _effects: &E,
+    ) -> Option<ClosedStep<N, M>>
+    where
+        Self: Sized,
+    {
         None
     }
 }
@@ -63,8 +65,14 @@ impl ClosedForm<3, 1> for Sleigh {
     }
 
     #[inline(always)]
-    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: ClosedStart<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
-        pushed::step(self, (t, h), start, push)
+    fn pushed_step<E: Effect<Self, 3>>(
+        &self,
+        t: f64,
+        h: f64,
+        start: ClosedStart<'_, 3>,
+        effects: &E,
+    ) -> Option<ClosedStep<3, 1>> {
+        pushed::step(self, (t, h), start, effects)
     }
 }
 
@@ -138,6 +146,70 @@ impl<B: ClosedForm<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Close
         if self.effects.is_none() {
             return self.body.closed_step(t, h, start);
         }
-        self.body.pushed_step(t, h, start, &Pushing(self)).map(Ok)
+        self.body.pushed_step(t, h, start, &self.effects).map(Ok)
     }
+}
+
+/// The start of a step in closed form. The numbers of `memory` change the step by round-off at most.
+#[derive(Debug)]
+pub struct ClosedStart<'a, const N: usize> {
+    /// The configuration.
+    pub q: &'a [f64; N],
+    /// The velocity.
+    pub v: &'a [f64; N],
+    /// The same velocity in the system's basis of admissible velocities, if known. A step may read either.
+    pub xi: Option<[f64; N]>,
+    /// Numbers left by the step before, replaced by numbers for the next step. After a step that fails they are of no use.
+    pub memory: &'a mut Memory,
+}
+
+impl<'a, const N: usize> ClosedStart<'a, N> {
+    /// A start with this configuration, velocity and memory.
+    #[must_use]
+    pub fn new(q: &'a [f64; N], v: &'a [f64; N], memory: &'a mut Memory) -> Self {
+        Self { q, v, xi: None, memory }
+    }
+}
+
+/// The result of a step in closed form.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosedStep<const N: usize, const M: usize> {
+    /// The increment `q1 - q0`.
+    pub increment: [f64; N],
+    /// The velocity `v1` at the end, admissible at `q1`.
+    pub velocity: [f64; N],
+    /// The same velocity as quasi-velocities in the system's basis of admissible velocities at `q1`.
+    pub xi: [f64; N],
+    /// Impulses of the constraints at the two ends of the step, `A(q0)' impulses[0] + A(q1)' impulses[1]` in all.
+    pub impulses: [[f64; M]; 2],
+    /// Newton iterations taken.
+    pub iterations: u32,
+}
+
+/// The whole force of the effects at `(t, q, v)`; `None` if it is not known by hand.
+#[inline(always)]
+pub(super) fn push<E: Effect<Sleigh, 3>, S: Scalar>(
+    effects: &E,
+    sleigh: &Sleigh,
+    t: S,
+    q: &[S; 3],
+    v: &[S; 3],
+) -> Option<[S; 3]> {
+    if E::MANY { called(|| effects.whole_force(sleigh, t, q, v)) } else { effects.whole_force(sleigh, t, q, v) }
+}
+
+/// The part of the force that may depend on the velocity; `None` if there is none.
+#[inline(always)]
+pub(super) fn brake<E: Effect<Sleigh, 3>, S: Scalar>(
+    effects: &E,
+    sleigh: &Sleigh,
+    t: S,
+    q: &[S; 3],
+    v: &[S; 3],
+) -> Option<[S; 3]> {
+    // A question once for all effects: within their loop the sines of a drag would be computed for those that are none.
+    if !effects.has_force() {
+        return None;
+    }
+    if E::MANY { called(|| effects.force(sleigh, t, q, v)) } else { effects.force(sleigh, t, q, v) }
 }

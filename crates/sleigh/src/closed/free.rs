@@ -1,7 +1,5 @@
-use super::least_spin;
-use super::settling::{FoundTurn, out_of_branch, settled};
-use super::spin_equation::SpinEquation;
-use super::spin_memory::{SpinNumbers, remembered};
+use super::spin_equation::{FoundTurn, SpinEquation, out_of_branch, settled};
+use super::spin_memory::{SpinNumbers, is_least, remembered, search_least};
 use super::{ClosedStart, ClosedStep};
 use crate::Sleigh;
 use dla::ClosedStepError;
@@ -97,8 +95,8 @@ fn search(
     numbers: &mut SpinNumbers,
 ) -> Result<FoundTurn, ClosedStepError> {
     let equation = SpinEquation::new(sleigh, h);
-    if least_spin::is_one(u0, omega0) {
-        return least_spin::search(equation, (u0, omega0), numbers);
+    if is_least(u0, omega0) {
+        return search_least(equation, (u0, omega0), numbers);
     }
     let expected = numbers[2];
     let near = (expected - omega0).abs() <= FAR * omega0.abs();

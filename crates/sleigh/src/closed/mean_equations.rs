@@ -1,8 +1,8 @@
-use super::Push;
+use super::form::{brake, push};
 use super::half_turn::{half_turn, turned};
 use crate::Sleigh;
 use dla::KnownAngle;
-use lagrangian::{Dual, from_fn, mul_add};
+use lagrangian::{Dual, Effect, from_fn, mul_add};
 
 /// The equations of a step of the pushed map for its mean velocities `U` and `w`; here what does not change with these.
 pub(crate) struct MeanEquations<'a> {
@@ -100,13 +100,13 @@ impl<'a> MeanEquations<'a> {
     /// The equations at the velocities `x`; none where the blade would turn by a right angle in half the step, or the force is not
     /// known by hand.
     #[inline(always)]
-    pub(crate) fn at<P: Push<3>>(&self, push: &P, x: [f64; 2]) -> Option<MeanPoint> {
+    pub(crate) fn at<E: Effect<Sleigh, 3>>(&self, effects: &E, x: [f64; 2]) -> Option<MeanPoint> {
         let half_turn = half_turn(0.5 * self.h * x[1]).ok()?.into();
         let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
         let heading = KnownAngle::new(heading, chord[0], chord[1]);
         let t = KnownAngle::from(self.t + 0.5 * self.h);
         let q = [KnownAngle::from(qx), KnownAngle::from(qy), heading];
-        let force = push.push(t, &q, &[x[0] * chord[1], x[0] * chord[0], x[1]].map(KnownAngle::from))?;
+        let force = push(effects, self.sleigh, t, &q, &[x[0] * chord[1], x[0] * chord[0], x[1]].map(KnownAngle::from))?;
         Some(self.point(x, half_turn, chord, force.map(|f| f.re)))
     }
 
@@ -115,9 +115,9 @@ impl<'a> MeanEquations<'a> {
     ///
     /// What differs by rounding is no brake. The general step has the same question, of any system.
     #[inline(always)]
-    pub(crate) fn overshoots<P: Push<3>>(
+    pub(crate) fn overshoots<E: Effect<Sleigh, 3>>(
         &self,
-        push: &P,
+        effects: &E,
         (x, half_turn): ([f64; 2], [f64; 2]),
         ([u1, omega1], [sin1, cos1]): ([f64; 2], [f64; 2]),
     ) -> bool {
@@ -127,7 +127,7 @@ impl<'a> MeanEquations<'a> {
         let ([speed, w], known) = (x, KnownAngle::from);
         let (mean, end) = ([speed * cos, speed * sin, w], [u1 * cos1, u1 * sin1, omega1]);
         let (t, q) = (known(self.t + 0.5 * self.h), [known(qx), known(qy), KnownAngle::new(heading, sin, cos)]);
-        let at = |v: &[f64; 3]| push.brake(t, &q, &v.map(known));
+        let at = |v: &[f64; 3]| brake(effects, self.sleigh, t, &q, &v.map(known));
         let Some((of_mean, of_end)) = at(&mean).zip(at(&end)) else { return false };
         let [dx, dy, turned]: [f64; 3] = from_fn(|i| end[i] - mean[i]);
         let damping = 0.5
@@ -143,9 +143,9 @@ impl<'a> MeanEquations<'a> {
 
     /// The equations with their derivatives, where sine and cosine of the half turn are known.
     #[inline(always)]
-    pub(crate) fn linearised<P: Push<3>>(
+    pub(crate) fn linearised<E: Effect<Sleigh, 3>>(
         &self,
-        push: &P,
+        effects: &E,
         x: [f64; 2],
         half_turn: [f64; 2],
     ) -> Option<(Matrix, MeanPoint)> {
@@ -163,7 +163,7 @@ impl<'a> MeanEquations<'a> {
             seeded(KnownAngle::from(speed * chord[0]), [chord[0], way * chord[1]]),
             seeded(KnownAngle::from(w), [0.0, 1.0]),
         ];
-        let force = push.push(Dual::fixed(KnownAngle::from(self.t + half)), &q, &v)?;
+        let force = push(effects, self.sleigh, Dual::fixed(KnownAngle::from(self.t + half)), &q, &v)?;
         let at = self.point(x, half_turn, chord, force.map(|f| f.re.re));
 
         let ([sin, cos], [along, across]) = (half_turn, at.force);

@@ -1,10 +1,11 @@
 use super::free::recovered;
 use super::half_turn::{half_turn, turned};
+use super::heading::NO_HEADING;
 use super::mean_equations::{Matrix, MeanEquations, MeanPoint};
-use super::mean_memory::remembered;
-use super::{ClosedStart, ClosedStep, Push};
+use super::memory::{Foreseen, Memory};
+use super::{ClosedStart, ClosedStep};
 use crate::Sleigh;
-use lagrangian::{from_fn, mul_add};
+use lagrangian::{Effect, from_fn, mul_add};
 
 /// A turn in one step (rad) beyond which the general step decides which solution continues the motion.
 const NEAR: f64 = 1.0;
@@ -38,11 +39,11 @@ const MOST: u32 = 4;
 /// from earlier steps, from which one of Newton's corrections is mostly enough. Returns `None`, and leaves the step to the general
 /// method, if the corrections do not contract or settle, if the blade turns far, or if the step is too long for these equations.
 #[inline(always)]
-pub(crate) fn step<P: Push<3>>(
+pub(crate) fn step<E: Effect<Sleigh, 3>>(
     sleigh: &Sleigh,
     (t, h): (f64, f64),
     ClosedStart { q, v, xi, memory }: ClosedStart<'_, 3>,
-    push: &P,
+    effects: &E,
 ) -> Option<ClosedStep<3, 1>> {
     let start = match xi {
         // Not both from there: two numbers that were written one by one are waited for where they are read together.
@@ -53,14 +54,14 @@ pub(crate) fn step<P: Push<3>>(
 
     let heading = before.heading.both();
     let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
-    let (mut matrix, mut at) = equations.linearised(push, before.expected(), before.half_turn())?;
+    let (mut matrix, mut at) = equations.linearised(effects, before.expected(), before.half_turn())?;
     let (mut x, mut d) = matrix.corrected(before.expected(), at.missing);
     let mut iterations = 1;
     let slight = |i: usize| d[i].abs() <= SLIGHT * x[i].abs();
     if !(matrix.keeps_sign() & slight(0) & slight(1)) {
         // Built anew, so that what stands above need not be in memory.
         let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
-        FoundPushed { x, d, at, matrix, iterations } = search(&equations, push, (x, d, matrix))?;
+        FoundPushed { x, d, at, matrix, iterations } = search(&equations, effects, (x, d, matrix))?;
     }
 
     // What is left to correct is linear to rounding.
@@ -78,7 +79,7 @@ pub(crate) fn step<P: Push<3>>(
     let ([sin_m, cos_m], way) = (turned(heading, half_turn), h * speed);
     let [sin1, cos1] = before.heading.turn(h * w, sin + sin, [sin_m, cos_m]);
     let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
-    if equations.overshoots(push, (x, half_turn), ([u1, omega1], [sin1, cos1])) {
+    if equations.overshoots(effects, (x, half_turn), ([u1, omega1], [sin1, cos1])) {
         return None;
     }
     let (turn, spin) = (speed * sin, a * w * cos);
@@ -109,14 +110,14 @@ struct FoundPushed {
 // Out of line, and given and giving numbers alone, so that it is no part of a step that ends at once.
 #[cold]
 #[inline(never)]
-fn search<P: Push<3>>(
+fn search<E: Effect<Sleigh, 3>>(
     equations: &MeanEquations<'_>,
-    push: &P,
+    effects: &E,
     tried: ([f64; 2], [f64; 2], Matrix),
 ) -> Option<FoundPushed> {
     let &MeanEquations { h, start, .. } = equations;
     let newton = |x: [f64; 2]| {
-        let (matrix, at) = equations.linearised(push, x, half_turn(0.5 * h * x[1]).ok()?.into())?;
+        let (matrix, at) = equations.linearised(effects, x, half_turn(0.5 * h * x[1]).ok()?.into())?;
         let (x, d) = matrix.corrected(x, at.missing);
         Some((x, d, matrix))
     };
@@ -131,7 +132,7 @@ fn search<P: Push<3>>(
             return None;
         }
         for _ in 0..2 {
-            let (before, at) = (d, equations.at(push, x)?);
+            let (before, at) = (d, equations.at(effects, x)?);
             (x, d) = matrix.corrected(x, at.missing);
             iterations += 1;
             if iterations == 2 && size(d) > CONTRACTION * first && size(d) > NOISE * size(x) {
@@ -154,4 +155,35 @@ fn search<P: Push<3>>(
 #[inline(always)]
 fn size([a, b]: [f64; 2]) -> f64 {
     a.abs().max(b.abs())
+}
+
+/// Number of backward differences of the mean velocities that are kept; the first are the last mean velocities themselves.
+const KEPT: usize = 8;
+const SIZE: usize = 6 + 2 * KEPT;
+/// Identifies these numbers and their order. A checkpoint may come from an older version or another map.
+const KIND: f64 = 6.0;
+
+/// The numbers that a step of the pushed map leaves to the next.
+type MeanMemory<'a> = Foreseen<'a, 2, KEPT, SIZE>;
+
+/// The numbers left by steps of length `h`, for a step that begins at this heading with the velocities `x`. If there are none, they are
+/// as after many steps with the velocities `x`; `None` if the blade would then turn by a right angle in half the step.
+#[inline(always)]
+fn remembered(memory: &mut Memory, h: f64, heading: f64, x: [f64; 2]) -> Option<MeanMemory<'_>> {
+    if !memory.is_of(h, KIND) {
+        begin(memory, h, x)?;
+    }
+    Some(Foreseen::of(memory, heading))
+}
+
+// A call, since few steps come here, into memory, where what was remembered is read from.
+#[cold]
+#[inline(never)]
+fn begin(memory: &mut Memory, h: f64, x: [f64; 2]) -> Option<()> {
+    let (sin, cos) = half_turn(0.5 * h * x[1]).ok()?;
+    memory.begin(h, KIND);
+    let (heading, numbers) = memory.parts::<_, SIZE>();
+    (*numbers, *heading) = ([0.0; SIZE], NO_HEADING);
+    numbers[..8].copy_from_slice(&[sin, cos, x[0], x[1], x[0], x[1], x[0], x[1]]);
+    Some(())
 }

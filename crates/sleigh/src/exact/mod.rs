@@ -1,6 +1,4 @@
-mod gauss;
 mod path;
-mod point;
 mod reduced;
 
 use crate::{Sleigh, SleighError, SleighState};

@@ -1,7 +1,7 @@
 use super::Moebius;
 use super::moebius::wrapped;
 use crate::SleighError;
-use crate::checks::finite;
+use crate::error::finite;
 use std::f64::consts::TAU;
 
 /// A part of a path of the tracer (m, rad).

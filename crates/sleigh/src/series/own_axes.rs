@@ -1,5 +1,4 @@
 use crate::Sleigh;
-use crate::effects::{EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope};
 use lagrangian::With;
 
 /// The reduced equations of a body on the plane in axes that turn with it, where they are of second degree and have the turn rate
@@ -88,17 +87,17 @@ impl OwnAxes {
     }
 }
 
-/// A body whose reduced equations may be of second degree in axes that turn with the body.
+/// A system whose reduced equations may be of second degree in axes that turn with its body.
 pub trait InOwnAxes {
     /// The reduced equations of the body ([`System::reduced`](lagrangian::System::reduced)) in these axes; `None` if they are not of
     /// second degree.
     fn own_axes(&self) -> Option<OwnAxes>;
 }
 
-/// An effect whose force may be constant in time and of first degree, in axes that turn with the body.
-pub trait PushInOwnAxes<B> {
-    /// The force; `None` if it is not of this form.
-    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+/// An effect whose force may be constant in time and of first degree, in axes that turn with the sleigh.
+pub trait PushInOwnAxes {
+    /// The force; `None`, the default, if it is not of this form.
+    fn in_own_axes(&self, _sleigh: &Sleigh) -> Option<OwnPush> {
         None
     }
 }
@@ -117,42 +116,34 @@ impl InOwnAxes for Sleigh {
     }
 }
 
-impl<B: InOwnAxes, E: PushInOwnAxes<B>> InOwnAxes for With<B, E> {
+impl<E: PushInOwnAxes> InOwnAxes for With<Sleigh, E> {
     fn own_axes(&self) -> Option<OwnAxes> {
         self.body.own_axes()?.pushed(self.effects.in_own_axes(&self.body)?)
     }
 }
 
 /// No force.
-impl<B> PushInOwnAxes<B> for () {
-    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+impl PushInOwnAxes for () {
+    fn in_own_axes(&self, _sleigh: &Sleigh) -> Option<OwnPush> {
         Some(OwnPush::NOTHING)
     }
 }
 
-impl<B, E: PushInOwnAxes<B>> PushInOwnAxes<B> for Vec<E> {
-    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
-        self.iter().try_fold(OwnPush::NOTHING, |sum, effect| sum.and(effect.in_own_axes(body)?))
+impl<E: PushInOwnAxes> PushInOwnAxes for Vec<E> {
+    fn in_own_axes(&self, sleigh: &Sleigh) -> Option<OwnPush> {
+        self.iter().try_fold(OwnPush::NOTHING, |sum, effect| sum.and(effect.in_own_axes(sleigh)?))
     }
 }
 
-macro_rules! tuple_of_pushes {
-    ($($effect:ident $index:tt),+) => {
-        impl<B, $($effect: PushInOwnAxes<B>),+> PushInOwnAxes<B> for ($($effect,)+) {
-            fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+macro_rules! tuples_of_pushes {
+    ($(($($effect:ident $index:tt),+))+) => {
+        $(impl<$($effect: PushInOwnAxes),+> PushInOwnAxes for ($($effect,)+) {
+            fn in_own_axes(&self, sleigh: &Sleigh) -> Option<OwnPush> {
                 let sum = OwnPush::NOTHING;
-                $(let sum = sum.and(self.$index.in_own_axes(body)?)?;)+
+                $(let sum = sum.and(self.$index.in_own_axes(sleigh)?)?;)+
                 Some(sum)
             }
-        }
+        })+
     };
 }
-tuple_of_pushes!(E0 0);
-tuple_of_pushes!(E0 0, E1 1);
-tuple_of_pushes!(E0 0, E1 1, E2 2);
-tuple_of_pushes!(E0 0, E1 1, E2 2, E3 3);
-
-macro_rules! not_of_this_form {
-    ($($effect:ident)*) => { $(impl<B> PushInOwnAxes<B> for $effect {})* };
-}
-not_of_this_form!(Slope EggCrate Hills Friction QuadraticDrag MovingMass);
+tuples_of_pushes!((E0 0) (E0 0, E1 1) (E0 0, E1 1, E2 2) (E0 0, E1 1, E2 2, E3 3));

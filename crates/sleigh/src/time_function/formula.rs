@@ -1,13 +1,15 @@
 use crate::SleighError;
 use expression::{Corners, Expression, Graph, Names, Series, Tape, parse};
 use lagrangian::{Piecewise, Scalar, ScalarFunction};
+use serde::{Serialize, Serializer};
+use std::fmt;
 use std::sync::Arc;
 
 /// A function of time as a formula in `t` (s), as `0.2*t*exp(-t/5)`, with what [`expression`] knows.
 ///
 /// Its derivatives are exact on every number that carries derivatives. Where `abs`, `sign`, `min` or `max` turns, it has a corner or jumps:
 /// like a [`Table`](crate::Table) it is then evaluated as one of its pieces, as soon as [`Piecewise::piece`] has chosen one.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Formula {
     text: Arc<str>,
     whole: Arc<FormulaTapes>,
@@ -97,22 +99,10 @@ impl Formula {
         }
     }
 
-    /// The value at `t`.
+    /// A derivative, by its order, on any number.
     #[inline(always)]
-    pub(super) fn value<S: Scalar>(&self, t: S) -> S {
-        t.apply(FormulaDerivative { formula: self, order: 0 })
-    }
-
-    /// The derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn slope<S: Scalar>(&self, t: S) -> S {
-        t.apply(FormulaDerivative { formula: self, order: 1 })
-    }
-
-    /// The second derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
-        t.apply(FormulaDerivative { formula: self, order: 2 })
+    pub(super) fn derivative<S: Scalar>(&self, order: usize, t: S) -> S {
+        t.apply(FormulaDerivative { formula: self, order })
     }
 }
 
@@ -164,6 +154,19 @@ impl Piecewise for Formula {
     fn piece(&self, t: f64) -> Self {
         let sides = self.pieces.as_ref().map(|pieces| pieces.corners.sides(t).into());
         Self { sides, ..self.clone() }
+    }
+}
+
+/// A formula is its text, in files and for debugging.
+impl Serialize for Formula {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(&self.text)
+    }
+}
+
+impl fmt::Debug for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Formula").field("text", &self.text).field("sides", &self.sides).finish_non_exhaustive()
     }
 }
 

@@ -12,9 +12,11 @@ pub use table::Table;
 
 use crate::SleighError;
 use lagrangian::{Piecewise, Scalar};
+use serde::Serialize;
 
 /// A function of time: a force, a torque, a position.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum TimeFunction {
     /// The same value at all times.
     Constant(f64),
@@ -51,62 +53,45 @@ impl TimeFunction {
     /// The value at `t`.
     #[inline(always)]
     pub fn value<S: Scalar>(&self, t: S) -> S {
-        if let Some(value) = self.constant() {
-            return S::constant(value).carried_as(t);
-        }
-        let value = t.called(
-            #[inline(always)]
-            |t| match self {
-                Self::Constant(value) => S::constant(*value),
-                Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
-                Self::Table(table) => S::constant(table.value()),
-                Self::Ramp(ramp) => ramp.value(t),
-                Self::Pulses(pulses) => pulses.value(t),
-                Self::Formula(formula) => formula.value(t),
-            },
-        );
-        value.carried_as(t)
+        self.derivative::<0, S>(t)
     }
 
     /// The derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn slope<S: Scalar>(&self, t: S) -> S {
-        if self.constant().is_some() {
-            return S::zero().carried_as(t);
-        }
-        let slope = t.called(
-            #[inline(always)]
-            |t| match self {
-                Self::Sine { amplitude, frequency, phase } => {
-                    (t * *frequency + *phase).cos() * (*amplitude * *frequency)
-                }
-                Self::Constant(_) | Self::Table(_) => S::zero(),
-                Self::Ramp(ramp) => S::constant(ramp.slope()),
-                Self::Pulses(pulses) => pulses.slope(t),
-                Self::Formula(formula) => formula.slope(t),
-            },
-        );
-        slope.carried_as(t)
+        self.derivative::<1, S>(t)
     }
 
     /// The second derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn curvature<S: Scalar>(&self, t: S) -> S {
-        if self.constant().is_some() {
-            return S::zero().carried_as(t);
+        self.derivative::<2, S>(t)
+    }
+
+    /// The derivative of this order, at most 2, in time at `t`.
+    #[inline(always)]
+    fn derivative<const ORDER: usize, S: Scalar>(&self, t: S) -> S {
+        if let Some(value) = self.constant() {
+            return S::constant(if ORDER == 0 { value } else { 0.0 }).carried_as(t);
         }
-        let curvature = t.called(
+        let derivative = t.called(
             #[inline(always)]
             |t| match self {
+                Self::Constant(_) | Self::Table(_) => S::zero(),
                 Self::Sine { amplitude, frequency, phase } => {
-                    (t * *frequency + *phase).sin() * -(*amplitude * *frequency * *frequency)
+                    let angle = t * *frequency + *phase;
+                    match ORDER {
+                        0 => angle.sin() * *amplitude,
+                        1 => angle.cos() * (*amplitude * *frequency),
+                        _ => angle.sin() * -(*amplitude * *frequency * *frequency),
+                    }
                 }
-                Self::Constant(_) | Self::Table(_) | Self::Ramp(_) => S::zero(),
-                Self::Pulses(pulses) => pulses.curvature(t),
-                Self::Formula(formula) => formula.curvature(t),
+                Self::Ramp(ramp) => ramp.derivative::<ORDER, S>(t),
+                Self::Pulses(pulses) => pulses.derivative::<ORDER, S>(t),
+                Self::Formula(formula) => formula.derivative(ORDER, t),
             },
         );
-        curvature.carried_as(t)
+        derivative.carried_as(t)
     }
 
     /// Value, slope and second derivative at `t`. A sine computes its sine and cosine once for all three.
@@ -136,6 +121,45 @@ impl TimeFunction {
         match numbers.into_iter().find(|x| !x.is_finite()) {
             Some(value) => Err(SleighError::NotFinite { quantity, value }),
             None => Ok(self),
+        }
+    }
+}
+
+impl TimeFunction {
+    /// Whether the value changes in time.
+    #[must_use]
+    pub fn varies(&self) -> bool {
+        let changes = |values: &[f64]| values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits());
+        match self {
+            Self::Constant(_) => false,
+            Self::Sine { amplitude, frequency, .. } => *amplitude != 0.0 && *frequency != 0.0,
+            Self::Table(table) => changes(table.values()),
+            Self::Ramp(ramp) => changes(ramp.values()),
+            Self::Pulses(_) => true,
+            Self::Formula(formula) => !formula.is_constant(),
+        }
+    }
+
+    /// Whether the function, or its slope, jumps.
+    #[must_use]
+    pub fn has_corners(&self) -> bool {
+        match self {
+            Self::Constant(_) | Self::Sine { .. } | Self::Pulses(_) => false,
+            Self::Table(table) => table.times().len() > 1,
+            Self::Ramp(ramp) => ramp.times().len() > 1,
+            Self::Formula(formula) => formula.has_corners(),
+        }
+    }
+
+    /// A bound on the size of the values of a number, a sine or a table; the size of other functions at `t = 0`.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        let of = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        match self {
+            Self::Constant(value) | Self::Sine { amplitude: value, .. } => value.abs(),
+            Self::Table(table) => of(table.values()),
+            Self::Ramp(ramp) => of(ramp.values()),
+            Self::Pulses(_) | Self::Formula(_) => self.value(0.0_f64).abs(),
         }
     }
 }

@@ -1,16 +1,18 @@
 use super::table::{begun, checked, within};
 use crate::SleighError;
 use lagrangian::{Piecewise, Scalar};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Smooth pulses from rest to rest, one after the other: `f(t) = A_i/T_i (1 - cos(2 pi (t - t_i)/T_i))` from `t_i` to `t_i + T_i`,
 /// so that pulse `i` has the integral `A_i`; function and slope vanish at every seam, and after the last pulse.
 ///
 /// Like a [`Table`](crate::Table) it is evaluated as one of its pieces, the first until [`Piecewise::piece`] chooses another.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pulses {
     times: Vec<f64>,
     areas: Vec<f64>,
+    #[serde(skip)]
     current: usize,
 }
 
@@ -36,28 +38,17 @@ impl Pulses {
         Some([*begin, end - begin, self.areas[self.current]])
     }
 
-    /// The value at `t`.
+    /// The derivative of this order in time at `t`.
     #[inline(always)]
-    pub(super) fn value<S: Scalar>(&self, t: S) -> S {
-        self.pulse()
-            .map_or(S::zero(), |[begin, length, area]| (-((t - begin) * (TAU / length)).cos() + 1.0) * (area / length))
-    }
-
-    /// The derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn slope<S: Scalar>(&self, t: S) -> S {
-        self.pulse().map_or(S::zero(), |[begin, length, area]| {
-            ((t - begin) * (TAU / length)).sin() * (area / length * (TAU / length))
-        })
-    }
-
-    /// The second derivative in time at `t`.
-    #[inline(always)]
-    pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
-        self.pulse().map_or(S::zero(), |[begin, length, area]| {
-            let rate = TAU / length;
-            ((t - begin) * rate).cos() * (area / length * rate * rate)
-        })
+    pub(super) fn derivative<const ORDER: usize, S: Scalar>(&self, t: S) -> S {
+        let Some([begin, length, area]) = self.pulse() else { return S::zero() };
+        let (rate, mean) = (TAU / length, area / length);
+        let angle = (t - begin) * rate;
+        match ORDER {
+            0 => (-angle.cos() + 1.0) * mean,
+            1 => angle.sin() * (mean * rate),
+            _ => angle.cos() * (mean * rate * rate),
+        }
     }
 }
 

@@ -1,18 +1,27 @@
-use super::table::{begun, checked, within};
+use super::table::{begun, checked, listed, within};
 use crate::SleighError;
 use lagrangian::{Piecewise, Scalar};
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// A piecewise-linear function: straight lines between the points `(times[i], values[i])`, constant before the first and after the last.
 ///
 /// Like a [`Table`](crate::Table) it is evaluated as one of its pieces, the constant before the first time until [`Piecewise::piece`]
 /// chooses another: a run is cut at the corners.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ramp {
+    #[serde(serialize_with = "listed")]
     times: Arc<[f64]>,
+    #[serde(serialize_with = "listed")]
     values: Arc<[f64]>,
     /// How many of the times are not after the piece.
+    #[serde(rename = "interpolation", serialize_with = "linear")]
     begun: usize,
+}
+
+/// A table in a file says that its values are joined by lines.
+fn linear<S: Serializer>(_begun: &usize, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str("linear")
 }
 
 impl Ramp {
@@ -45,17 +54,27 @@ impl Ramp {
         }
     }
 
-    /// The value at `t`.
-    #[inline(always)]
-    pub(super) fn value<S: Scalar>(&self, t: S) -> S {
-        let [begin, value, slope] = self.line();
-        (t - begin) * slope + value
+    /// The times (s).
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times
     }
 
-    /// The derivative in time.
+    /// The value at each of the times.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The derivative of this order in time at `t`.
     #[inline(always)]
-    pub(super) fn slope(&self) -> f64 {
-        self.line()[2]
+    pub(super) fn derivative<const ORDER: usize, S: Scalar>(&self, t: S) -> S {
+        let [begin, value, slope] = self.line();
+        match ORDER {
+            0 => (t - begin) * slope + value,
+            1 => S::constant(slope),
+            _ => S::zero(),
+        }
     }
 }
 

@@ -1,15 +1,19 @@
 use crate::SleighError;
 use lagrangian::Piecewise;
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// A piecewise-constant function: the value `values[i]` holds from `times[i]` on, and the first one before that too.
 ///
 /// It is evaluated as one of its pieces at all times, the first until [`Piecewise::piece`] chooses another: a run that is
 /// cut at the jumps never sees two.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
+    #[serde(serialize_with = "listed")]
     times: Arc<[f64]>,
+    #[serde(serialize_with = "listed")]
     values: Arc<[f64]>,
+    #[serde(skip)]
     current: usize,
 }
 
@@ -51,6 +55,11 @@ impl Piecewise for Table {
     fn piece(&self, t: f64) -> Self {
         Self { current: begun(&self.times, t).saturating_sub(1), ..self.clone() }
     }
+}
+
+/// Writes the numbers as a list.
+pub(super) fn listed<S: Serializer>(numbers: &Arc<[f64]>, to: S) -> Result<S::Ok, S::Error> {
+    numbers[..].serialize(to)
 }
 
 /// The times between two.

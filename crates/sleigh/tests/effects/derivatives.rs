@@ -1,24 +1,17 @@
 //! Derivatives of Lagrangian, forces and constraints by the dual numbers of the methods and by those of `num-dual`.
 
+use super::{sine, sleigh};
 use approx::assert_relative_eq;
 use lagrangian::{Dual, Effect, HyperDual, Lanes, Motion, Reduced, Scalar, System, With, reduced_acceleration};
 use num_dual::{Dual64, HyperDual64};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
-use sleigh::{ClosedPath, Flywheel, Guided, Sleigh, TimeFunction};
+use sleigh::{ClosedPath, Flywheel, Guided, Sleigh};
 use std::array::from_fn;
 
 type Fields = (Slope, Bowl, EggCrate, Hills);
 type Drives = (Drag, Thrust, Torque, MovingMass);
 type Everything = With<Flywheel<Sleigh>, (Fields, Drives)>;
-
-fn sine(amplitude: f64, frequency: f64, phase: f64) -> TimeFunction {
-    TimeFunction::Sine { amplitude, frequency, phase }
-}
-
-fn sleigh() -> Sleigh {
-    Sleigh::new(1.3, 0.8, 0.4).unwrap()
-}
 
 fn everything() -> Everything {
     let hill = Hill { height: 0.5, x: 0.3, y: -0.4, width: 0.8 };

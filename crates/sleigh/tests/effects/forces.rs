@@ -1,5 +1,6 @@
 //! What the forces do: their power, and their components along the blade, across it and about it.
 
+use super::sleigh;
 use approx::assert_abs_diff_eq;
 use lagrangian::{Effect, EffectSlope};
 use proptest::prelude::*;
@@ -8,7 +9,7 @@ use sleigh::{Flywheel, Sleigh, TimeFunction};
 
 /// Along the blade (N), across it (N), and about its contact point (N m).
 fn components<E: Effect<Sleigh, 3>>(effect: &E, t: f64, q: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
-    let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let sleigh = sleigh();
     let [x, y, torque] = effect.force(&sleigh, t, q, v).unwrap();
     let (sin, cos) = q[2].sin_cos();
     [x * cos + y * sin, y * cos - x * sin, torque]
@@ -37,7 +38,7 @@ proptest! {
             v[0] - v[2] * (sin * rx + cos * ry) + cos * dx - sin * dy,
             v[1] + v[2] * (cos * rx - sin * ry) + sin * dx + cos * dy,
         ];
-        let energy = mass.lagrangian(&Sleigh::new(1.3, 0.8, 0.4).unwrap(), t, &q, &v).unwrap();
+        let energy = mass.lagrangian(&sleigh(), t, &q, &v).unwrap();
         let expected = 0.2 * (point[0] * point[0] + point[1] * point[1]);
         // Squares below thirty, two dozen operations.
         assert_abs_diff_eq!(energy, expected, epsilon = 30.0 * 24.0 * f64::EPSILON);
@@ -46,7 +47,7 @@ proptest! {
     /// Minus `V_0 (cos(k_x X) + cos(k_y Y))` at the centre of mass, and its derivatives by hand.
     #[test]
     fn an_egg_crate_has_its_waves(q in proptest::array::uniform3(-3.0..3.0f64)) {
-        let (sleigh, [kx, ky], height, a) = (Sleigh::new(1.3, 0.8, 0.4).unwrap(), [2.5, 0.4], 0.7, 0.4);
+        let (sleigh, [kx, ky], height, a) = (sleigh(), [2.5, 0.4], 0.7, 0.4);
         let crate_ = EggCrate::new(height, [kx, ky]).unwrap();
         let (sin, cos) = q[2].sin_cos();
         let [x, y] = [kx * (q[0] + a * cos), ky * (q[1] + a * sin)];
@@ -74,7 +75,7 @@ proptest! {
         close(components(&Thrust::new(function.clone()).unwrap(), t, &q, &v), [value, 0.0, 0.0]);
         close(components(&Torque::new(function).unwrap(), t, &q, &v), [0.0, 0.0, value]);
         // On more coordinates the others feel nothing.
-        let rotor = Flywheel::new(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.2, None).unwrap();
+        let rotor = Flywheel::new(sleigh(), 0.2, None).unwrap();
         let (q, v) = ([q[0], q[1], q[2], 0.5], [v[0], v[1], v[2], 0.6]);
         for force in [
             Drag::new(0.3, 0.7).unwrap().force(&rotor, t, &q, &v),

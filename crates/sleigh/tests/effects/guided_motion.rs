@@ -1,5 +1,6 @@
 //! The equations that guided and laden sleighs give by hand against what automatic derivatives make of their Lagrangians and constraints.
 
+use super::{sine, sleigh};
 use approx::assert_relative_eq;
 use lagrangian::{Dual, Effect, EffectSlope, Lanes, Motion, Piecewise, Reduced, System, With, reduced_acceleration};
 use proptest::prelude::*;
@@ -8,14 +9,6 @@ use sleigh::{ClosedPath, Formula, Guide, Guided, Pulses, Sleigh, TimeFunction};
 
 /// Some fifty terms of order one to a hundred, each rounded, and the solution of an equation whose matrix has a condition below ten.
 const ROUNDING: f64 = 1e-11;
-
-fn sine(amplitude: f64, frequency: f64, phase: f64) -> TimeFunction {
-    TimeFunction::Sine { amplitude, frequency, phase }
-}
-
-fn sleigh() -> Sleigh {
-    Sleigh::new(1.3, 0.8, 0.4).unwrap()
-}
 
 fn formula() -> TimeFunction {
     TimeFunction::Formula(Formula::new("0.3*t*exp(-t^2/9) + 0.1").unwrap())

@@ -1,19 +1,13 @@
 //! The rows of the constraint say what is imposed: the motion that is asked for meets them, and no other does.
 
+use super::{sine, sleigh};
 use approx::assert_abs_diff_eq;
 use lagrangian::{System, constraint_residual};
 use proptest::prelude::*;
-use sleigh::{ClosedPath, Guide, Guided, Sleigh, TimeFunction};
+use sleigh::{ClosedPath, Guide, Guided};
 
+/// The offset of the mass (m).
 const OFFSET: f64 = 0.4;
-
-fn sleigh() -> Sleigh {
-    Sleigh::new(1.3, 0.8, OFFSET).unwrap()
-}
-
-fn sine(amplitude: f64, frequency: f64, phase: f64) -> TimeFunction {
-    TimeFunction::Sine { amplitude, frequency, phase }
-}
 
 /// The velocity with a speed along the blade, one across it, and a turn rate.
 fn moving(q: &[f64; 3], speed: f64, slip: f64, turn_rate: f64) -> [f64; 3] {

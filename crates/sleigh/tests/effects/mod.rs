@@ -11,3 +11,14 @@ mod paths;
 mod pushed;
 mod refusals;
 mod time;
+
+use sleigh::{Sleigh, TimeFunction};
+
+/// `m = 1.3`, `I = 0.8`, `a = 0.4`.
+fn sleigh() -> Sleigh {
+    Sleigh::new(1.3, 0.8, 0.4).unwrap()
+}
+
+fn sine(amplitude: f64, frequency: f64, phase: f64) -> TimeFunction {
+    TimeFunction::Sine { amplitude, frequency, phase }
+}

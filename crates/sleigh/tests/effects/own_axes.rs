@@ -60,7 +60,7 @@ proptest! {
 /// What is not of second degree there has none, nor have two wells about two points.
 #[test]
 fn others_have_none() {
-    fn axes<E: PushInOwnAxes<Sleigh>>(effects: E) -> Option<OwnAxes> {
+    fn axes<E: PushInOwnAxes>(effects: E) -> Option<OwnAxes> {
         With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects }.own_axes()
     }
     let bowl = |stiffness, center| Bowl::new(stiffness, center).unwrap();

@@ -1,15 +1,12 @@
 //! What no effect and no body accepts, each beside a neighbour that it does.
 
+use super::{sine, sleigh};
 use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hill, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{ClosedPath, Flywheel, Guide, Guided, Sleigh, SleighError, Table, TimeFunction};
 use std::fmt::Debug;
 
 const NAN: f64 = f64::NAN;
 const INFINITE: f64 = f64::INFINITY;
-
-fn sleigh() -> Sleigh {
-    Sleigh::new(1.3, 0.8, 0.4).unwrap()
-}
 
 fn refused<T: Debug>(result: Result<T, SleighError>, word: &str) {
     let error = result.unwrap_err();
@@ -24,10 +21,6 @@ fn not_finite<T: Debug>(result: Result<T, SleighError>, word: &str) {
 fn not_positive<T: Debug>(result: Result<T, SleighError>, word: &str) {
     assert!(matches!(result, Err(SleighError::NotPositive { .. })), "{result:?}");
     refused(result, word);
-}
-
-fn sine(amplitude: f64, frequency: f64, phase: f64) -> TimeFunction {
-    TimeFunction::Sine { amplitude, frequency, phase }
 }
 
 #[test]

@@ -1,8 +1,8 @@
+use super::{Guiding, Rotor, SleighFamily, Started, system};
 use crate::{BuildError, BuiltScene, Scene, SceneEffect};
 use dla::{Schedule, fitted};
-use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
+use sleigh::effects::{AnyEffect, MovingMass};
 use sleigh::{Exact, Guide, Guided, SleighError};
-use systems::{AnyEffect, Guiding, Rotor, SleighFamily, Started};
 
 impl Scene {
     /// The system of the scene, with its start.
@@ -37,13 +37,13 @@ impl Scene {
         if self.imposed()?.is_some() || self.table_rate().is_some() {
             return Ok(None);
         }
-        let acting = (&self.acting()?[..], &self.masses()?[..]);
-        Ok(Some(SleighFamily::new(self.sleigh, self.rotor()?, acting, 0.5 * self.run.duration)))
+        let acting = (&self.acting()[..], &self.masses()[..]);
+        Ok(Some(SleighFamily::new(self.sleigh, self.rotor(), acting, 0.5 * self.run.duration)))
     }
 
     /// The system of the first blade alone, without trailers.
     pub(crate) fn first_blade(&self) -> Result<Started, SleighError> {
-        systems::system(self.guiding()?, self.rotor()?, self.acting()?, &self.start)
+        system(self.guiding()?, self.rotor(), self.acting(), &self.start)
     }
 
     /// The steps of the run: equal ones, no longer than `run.step`, where every jump of the scene is then at a node. Else each smooth piece
@@ -73,14 +73,11 @@ impl Scene {
         Ok(self.first_blade()?.system.mechanism().jump_times(0.0, self.run.duration))
     }
 
-    pub(crate) fn rotor(&self) -> Result<Option<Rotor>, SleighError> {
-        for effect in &self.effects {
-            if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
-                let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
-                return Ok(Some(Rotor { inertia: *inertia, rate: *rotor_rate, torque }));
-            }
-        }
-        Ok(None)
+    pub(super) fn rotor(&self) -> Option<Rotor> {
+        self.effects.iter().find_map(|effect| match effect {
+            SceneEffect::Flywheel(rotor) => Some(rotor.clone()),
+            _ => None,
+        })
     }
 
     /// Whether anything in the scene is a function of time.
@@ -90,16 +87,18 @@ impl Scene {
     }
 
     /// The effects that act on the coordinates there are.
-    pub(crate) fn acting(&self) -> Result<Vec<AnyEffect>, SleighError> {
-        self.effects.iter().filter_map(|effect| effect.acting().transpose()).collect()
+    pub(super) fn acting(&self) -> Vec<AnyEffect> {
+        let acting = |effect: &SceneEffect| match effect {
+            SceneEffect::Acting(effect) => Some(effect.clone()),
+            _ => None,
+        };
+        self.effects.iter().filter_map(acting).collect()
     }
 
     /// The masses that are moved in the body.
-    fn masses(&self) -> Result<Vec<MovingMass>, SleighError> {
+    fn masses(&self) -> Vec<MovingMass> {
         let mass = |effect: &SceneEffect| match effect {
-            SceneEffect::MovingMass { mass, x, y } => {
-                Some(x.build().and_then(|x| MovingMass::new(*mass, x, y.build()?)))
-            }
+            SceneEffect::MovingMass(mass) => Some(mass.clone()),
             _ => None,
         };
         self.effects.iter().filter_map(mass).collect()
@@ -117,21 +116,13 @@ impl Scene {
     pub(crate) fn imposed(&self) -> Result<Option<Guiding>, SleighError> {
         let sleigh = self.sleigh;
         let imposed = self.effects.iter().find_map(|effect| match effect {
-            SceneEffect::Servo { speed: Some(speed), turn_rate: Some(turn_rate) } => {
-                let both = speed.build().and_then(|u| Guided::<2>::servo(sleigh, u, turn_rate.build()?));
-                Some(both.map(Guiding::Two))
-            }
-            SceneEffect::Servo { speed: Some(speed), .. } => {
-                let one = speed.build().and_then(|u| Guided::<1>::servo(sleigh, Guide::Speed(u)));
-                Some(one.map(Guiding::One))
-            }
-            SceneEffect::Servo { turn_rate: Some(turn_rate), .. } => {
-                let one = turn_rate.build().and_then(|omega| Guided::<1>::servo(sleigh, Guide::TurnRate(omega)));
-                Some(one.map(Guiding::One))
-            }
-            SceneEffect::Tracer { path } => {
-                Some(path.build().and_then(|path| Guided::<2>::tracer(sleigh, path)).map(Guiding::Two))
-            }
+            SceneEffect::Servo { speed, turn_rate } => match (speed.clone(), turn_rate.clone()) {
+                (Some(speed), Some(rate)) => Some(Guided::<2>::servo(sleigh, speed, rate).map(Guiding::Two)),
+                (Some(speed), None) => Some(Guided::<1>::servo(sleigh, Guide::Speed(speed)).map(Guiding::One)),
+                (None, Some(rate)) => Some(Guided::<1>::servo(sleigh, Guide::TurnRate(rate)).map(Guiding::One)),
+                (None, None) => None,
+            },
+            SceneEffect::Tracer { path } => Some(Guided::<2>::tracer(sleigh, path.clone()).map(Guiding::Two)),
             _ => None,
         });
         imposed.transpose()
@@ -139,7 +130,7 @@ impl Scene {
 
     /// The sleigh, what guides it, and what it carries.
     pub(crate) fn guiding(&self) -> Result<Guiding, SleighError> {
-        let (rate, masses) = (self.table_rate(), self.masses()?);
+        let (rate, masses) = (self.table_rate(), self.masses());
         let on_plane = rate.unwrap_or(0.0);
         Ok(match self.imposed()? {
             Some(Guiding::One(body)) => Guiding::One(body.on_turntable(on_plane)?.carrying(masses)),
@@ -154,36 +145,7 @@ impl Scene {
     /// # Errors
     /// [`SleighError`] if a quantity of the motion overflows.
     pub fn exact(&self) -> Result<Option<Exact>, SleighError> {
-        let free = |effect: &SceneEffect| matches!(effect, SceneEffect::Flywheel { torque: None, .. });
+        let free = |effect: &SceneEffect| matches!(effect, SceneEffect::Flywheel(Rotor { torque: None, .. }));
         self.effects.iter().all(free).then(|| Exact::new(&self.sleigh, &self.start)).transpose()
-    }
-}
-
-impl SceneEffect {
-    /// The effect as a potential or a force on the existing coordinates; `None` for an effect that makes another body.
-    fn acting(&self) -> Result<Option<AnyEffect>, SleighError> {
-        Ok(Some(match self {
-            SceneEffect::Slope { gravity } => AnyEffect::Slope(Slope::new(*gravity)?),
-            SceneEffect::Bowl { stiffness, center } => AnyEffect::Bowl(Bowl::new(*stiffness, *center)?),
-            SceneEffect::EggCrate { height, wave_number } => AnyEffect::EggCrate(EggCrate::new(*height, *wave_number)?),
-            SceneEffect::Hills { hills } => {
-                AnyEffect::Hills(Hills::new(hills.iter().copied().map(Into::into).collect())?)
-            }
-            SceneEffect::Drag { along, turning } => AnyEffect::Drag(Drag::new(*along, *turning)?),
-            SceneEffect::QuadraticDrag { along, turning } => {
-                AnyEffect::QuadraticDrag(QuadraticDrag::new(*along, *turning)?)
-            }
-            SceneEffect::Friction { along, smoothing, turning, turning_smoothing } => {
-                AnyEffect::Friction(Friction::new(*along, *smoothing, *turning, *turning_smoothing)?)
-            }
-            SceneEffect::Thrust { force } => AnyEffect::Thrust(Thrust::new(force.build()?)?),
-            SceneEffect::Torque { torque } => AnyEffect::Torque(Torque::new(torque.build()?)?),
-            SceneEffect::MovingMass { .. }
-            | SceneEffect::Trailers(_)
-            | SceneEffect::Flywheel { .. }
-            | SceneEffect::Servo { .. }
-            | SceneEffect::Tracer { .. }
-            | SceneEffect::Turntable { .. } => return Ok(None),
-        }))
     }
 }

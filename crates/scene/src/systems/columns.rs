@@ -1,4 +1,4 @@
-use crate::{EffectPower, SceneSystem};
+use super::{EffectPower, SceneSystem};
 use assembly::parts::Train;
 use dla::Node;
 use sleigh::SleighState;
@@ -45,7 +45,7 @@ const SLEIGH: [(&str, &str); 11] = [
 const ROTOR: [(&str, &str); 2] = [("rotor_angle", "rad"), ("rotor_rate", "rad/s")];
 
 /// The columns of a sleigh: what a scene does not have has no column.
-pub(crate) fn of_sleigh(rotor: bool, powers: &[EffectPower]) -> Vec<Column> {
+pub(super) fn of_sleigh(rotor: bool, powers: &[EffectPower]) -> Vec<Column> {
     let mut columns: Vec<_> = SLEIGH.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
     if rotor {
         columns.extend(ROTOR.map(|(name, unit)| Column::new(name, unit)));
@@ -58,7 +58,7 @@ pub(crate) fn of_sleigh(rotor: bool, powers: &[EffectPower]) -> Vec<Column> {
 }
 
 /// The numbers of a node in these columns, of the smooth piece that holds there.
-pub(crate) fn row_of_sleigh(piece: &dyn SceneSystem, node: &Node) -> Vec<f64> {
+pub(super) fn row_of_sleigh(piece: &dyn SceneSystem, node: &Node) -> Vec<f64> {
     let Node { t, q, v, energy, constraint, .. } = node;
     let SleighState { x, y, heading, speed, turn_rate } = piece.sleigh_state(q, v);
     let [center_x, center_y] = piece.centre(q);
@@ -77,7 +77,7 @@ pub(crate) fn row_of_sleigh(piece: &dyn SceneSystem, node: &Node) -> Vec<f64> {
 }
 
 /// The columns of a train: its first blade, the headings of the others, and the rotor, if there is one.
-pub(crate) fn of_train(train: &Train) -> Vec<Column> {
+pub(super) fn of_train(train: &Train) -> Vec<Column> {
     let own = SLEIGH[..7].iter().copied().chain([("work", "J"), ("constraint", "m/s"), ("hinges", "m")]);
     let others = (1..=train.trailers().len()).map(|k| Column::new(format!("heading_{k}"), "rad"));
     let rotor = if train.has_rotor() { &ROTOR[..] } else { &[] };
@@ -86,7 +86,7 @@ pub(crate) fn of_train(train: &Train) -> Vec<Column> {
 }
 
 /// The numbers of a node in these columns.
-pub(crate) fn row_of_train(train: &Train, node: &Node) -> Vec<f64> {
+pub(super) fn row_of_train(train: &Train, node: &Node) -> Vec<f64> {
     let Node { t, q, v, energy, work, constraint, position, .. } = node;
     let SleighState { x, y, heading, speed, turn_rate } = train.blade(q, v, 0);
     let hinges = position.unwrap_or(f64::NAN);

@@ -1,9 +1,9 @@
-use crate::{AnyEffect, Rotor};
+use super::Rotor;
 use dla::ParametrisedMechanics;
 use lagrangian::{
     AdmissibleBasis, Constraint, Effect, Gradients, Parametrised, Piecewise, Scalar, Seeded, SeededMember,
 };
-use sleigh::effects::MovingMass;
+use sleigh::effects::{AnyEffect, MovingMass};
 use sleigh::{Sleigh, TimeFunction};
 
 /// The parameters of a [`SleighFamily`] in their order, with their names in scenes.

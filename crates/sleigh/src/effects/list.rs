@@ -1,10 +1,10 @@
-use crate::AnyEffect;
+use super::AnyEffect;
+use crate::series::{OwnPush, PushInOwnAxes};
+use crate::{Sleigh, SleighBody};
 use dla::KnownAngle;
 use lagrangian::{Effect, EffectSlope, Piecewise, Scalar};
-use sleigh::series::{OwnPush, PushInOwnAxes};
-use sleigh::{Sleigh, SleighBody};
 
-/// The effects of a scene.
+/// A list of effects.
 ///
 /// The effects act on the sleigh of a body, so that each function is compiled once for all bodies, in vector registers too.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -136,9 +136,9 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for EffectList {
     }
 }
 
-impl<B: SleighBody> PushInOwnAxes<B> for EffectList {
-    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
-        self.0.in_own_axes(body.sleigh())
+impl PushInOwnAxes for EffectList {
+    fn in_own_axes(&self, sleigh: &Sleigh) -> Option<OwnPush> {
+        self.0.in_own_axes(sleigh)
     }
 }
 

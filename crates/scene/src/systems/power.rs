@@ -1,9 +1,9 @@
 //! The power of what drives or brakes a scene, by name.
 
-use crate::EffectList;
 use dla::Stepper;
 use lagrangian::{Effect, System, With, force_power, lagrangian_power};
 use sleigh::closed::ClosedForm;
+use sleigh::effects::EffectList;
 use sleigh::series::{InOwnAxes, OwnPush, PushInOwnAxes};
 use sleigh::{Flywheel, Guided, Sleigh, SleighBody, Taylor};
 
@@ -17,7 +17,7 @@ pub struct EffectPower {
 }
 
 /// The effects of a scene, perhaps none.
-pub(crate) trait SceneEffects<B, const N: usize>: Effect<B, N> + PushInOwnAxes<B> {
+pub(super) trait SceneEffects<B, const N: usize>: Effect<B, N> + PushInOwnAxes {
     /// The power of each effect that has power.
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower>;
 }
@@ -50,9 +50,12 @@ impl<B: SleighBody, const N: usize> SceneEffects<B, N> for EffectList {
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower> {
         let mut powers: Vec<EffectPower> = Vec::new();
         for effect in self.all() {
-            let Some(kind) = effect.powered() else { continue };
+            if effect.is_ground() {
+                continue;
+            }
+            let kind = effect.kind();
             let before = self.all().iter().take_while(|other| !std::ptr::eq(*other, effect));
-            let number = 1 + before.filter(|other| other.powered() == Some(kind)).count();
+            let number = 1 + before.filter(|other| other.kind() == kind).count();
             powers.push(EffectPower { name: numbered(kind, number), power: power_of(body.sleigh(), effect, t, q, v) });
         }
         powers
@@ -71,7 +74,7 @@ fn numbered(kind: &str, number: usize) -> String {
 }
 
 /// A body of a scene: a sleigh, perhaps with a rotor, perhaps guided.
-pub(crate) trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
+pub(super) trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
     /// The power of everything that drives the body's own coordinates and constraints, which have the multipliers `lambda`.
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
 
@@ -125,7 +128,7 @@ impl<B: SceneBody<3, M>, const M: usize> SceneBody<4, M> for Flywheel<B> {
 }
 
 /// The powers of a body and of what acts on it.
-pub(crate) fn of<B, E, const N: usize, const M: usize>(
+pub(super) fn of<B, E, const N: usize, const M: usize>(
     system: &With<B, E>,
     t: f64,
     q: &[f64; N],

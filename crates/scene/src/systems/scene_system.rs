@@ -1,9 +1,11 @@
-use crate::power::{self, SceneBody, SceneEffects};
-use crate::{AnyEffect, Column, EffectList, EffectPower, SleighFamily, columns};
+use super::power::{self, SceneBody, SceneEffects};
+use super::{Column, EffectPower, SleighFamily, columns};
 use assembly::parts::Train;
 use dla::{CompiledShape, Mechanism, Node, OwnMethods, ParametrisedMechanism, Shapes, Stepper, row};
 use lagrangian::{Piecewise, System, With};
+use serde::Serialize;
 use sleigh::closed::ClosedForm;
+use sleigh::effects::{AnyEffect, EffectList};
 use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
 
 /// A system that answers in the words of a scene.
@@ -112,7 +114,7 @@ where
 
     fn series(&self, t: f64, tolerance: f64) -> Option<Stepper<'_, N, M>> {
         let With { body, effects } = self.0.piece(t);
-        body.series(effects.in_own_axes(&body)?, tolerance)
+        body.series(effects.in_own_axes(body.sleigh())?, tolerance)
     }
 }
 
@@ -134,7 +136,7 @@ impl std::fmt::Debug for Started {
 
 /// A sleigh, with the velocities imposed on it.
 #[derive(Debug, Clone)]
-pub enum Guiding {
+pub(crate) enum Guiding {
     /// No velocity is imposed, and the sleigh carries nothing.
     None(Sleigh),
     /// No velocity is imposed; its plane turns, or it carries masses that are moved.
@@ -146,13 +148,15 @@ pub enum Guiding {
 }
 
 /// A rotor on a body.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rotor {
     /// Its inertia (kg m^2).
     pub inertia: f64,
     /// Its rate relative to the body at the start (rad/s).
+    #[serde(rename = "rotor_rate")]
     pub rate: f64,
     /// The torque of its motor (N m), if it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<TimeFunction>,
 }
 
@@ -163,7 +167,7 @@ pub struct Rotor {
 ///
 /// # Errors
 /// [`SleighError`] if the rotor has impossible parameters.
-pub fn system(
+pub(crate) fn system(
     body: Guiding,
     rotor: Option<Rotor>,
     effects: Vec<AnyEffect>,
