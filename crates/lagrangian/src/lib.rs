@@ -59,7 +59,7 @@ mod with_basis;
 pub use along::acceleration_along;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
-pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
+pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_on_basis, inverse_reduced_mass};
 pub use by_hand::{Reduced, StageEvaluation};
 pub use called::Called;
 pub use classify::{

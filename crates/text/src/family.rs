@@ -1,5 +1,5 @@
 use crate::tapes::TapePoint;
-use crate::{TextError, TextModel, TextSystem, Words};
+use crate::{TextError, TextFunctions, TextModel, Words};
 use ::formulas::{Formulas, Parameters};
 use dla::ParametrisedMechanics;
 use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, Seeded, SeededMember, System};
@@ -52,7 +52,7 @@ impl Family {
     /// Returns `None` if the shape has no room for the system.
     #[must_use]
     pub fn shaped<const N: usize, const M: usize>(&self, t: f64, q: &[f64]) -> Option<FamilySystem<N, M>> {
-        let member = TextSystem::new(Arc::clone(&self.member), t, q)?;
+        let member = TextFunctions::new(Arc::clone(&self.member), t, q)?;
         Some(FamilySystem(member.of_model(&self.free)))
     }
 
@@ -68,7 +68,7 @@ impl Family {
 
 /// A [`Family`] with systems of `N` coordinates and `M` constraints.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FamilySystem<const N: usize, const M: usize>(TextSystem<N, M>);
+pub struct FamilySystem<const N: usize, const M: usize>(TextFunctions<N, M>);
 
 /// The basis zero is the one it has.
 impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, FREE> for FamilySystem<N, M> {

@@ -30,6 +30,7 @@
 
 mod any;
 mod family;
+mod functions;
 mod geometry;
 mod model;
 mod reduced;
@@ -46,5 +47,6 @@ pub use geometry::Geometry;
 pub use model::{Coordinate, TextModel};
 pub use start::{Moved, StartError, TextStart};
 pub use start_along::Varied;
+pub use functions::TextFunctions;
 pub use system::TextSystem;
 pub use written::WrittenEquations;
