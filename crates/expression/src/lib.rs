@@ -1,6 +1,6 @@
 //! Expressions from text: parsed, simplified, differentiated, and evaluated on any scalar or printed as Rust.
 //!
-//! This crate knows no mechanics. A name is a position in a table, and what it means is said by who asks: a variable, a constant, or the
+//! Mechanics is known to the module [`formulas`] alone, which says what the texts of a system mean. Elsewhere a name is a position in a table, and what it means is said by who asks: a variable, a constant, or the
 //! expression that it abbreviates.
 //!
 //! 1. [`parse`] reads a text, with the [`Names`] that it may use, within [`Limits`]. An [`Error`] says which column is wrong, and what
@@ -48,6 +48,7 @@
 
 mod corners;
 mod error;
+pub mod formulas;
 mod function;
 mod graph;
 mod interval;

@@ -1,6 +1,6 @@
 use crate::tapes::TapePoint;
 use crate::{TextError, TextFunctions, TextModel, Words};
-use ::formulas::{Formulas, Parameters};
+use expression::formulas::{Formulas, Parameters};
 use dla::ParametrisedMechanics;
 use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, Seeded, SeededMember, System};
 use std::array::from_fn;

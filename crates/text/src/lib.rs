@@ -40,7 +40,7 @@ mod system;
 mod tapes;
 mod written;
 
-pub use ::formulas::{Entry, Problem, TextError, Unit, Words};
+pub use expression::formulas::{Entry, Problem, TextError, Unit, Words};
 pub use any::{MOST_CONSTRAINTS, MOST_COORDINATES, TextMechanics, started};
 pub use family::{FREE, Family, FamilySystem};
 pub use geometry::Geometry;

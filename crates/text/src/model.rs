@@ -1,7 +1,7 @@
 use crate::reduced::EquationsOfBases;
 use crate::tapes::{TapePoint, Tapes};
 use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
-use ::formulas::{Formulas, Parameters, RowElimination};
+use expression::formulas::{Formulas, Parameters, RowElimination};
 use expression::{Corners, Expression};
 use lagrangian::Pivots;
 use nalgebra::{DMatrix, DVector};

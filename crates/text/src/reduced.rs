@@ -2,7 +2,7 @@
 
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextFunctions, TextModel};
-use ::formulas::{Formulas, ReducedFormulas};
+use expression::formulas::{Formulas, ReducedFormulas};
 use expression::Expression;
 use lagrangian::{Pivots, Reduced, ReducedError, Scalar, StageEvaluation};
 use std::collections::BTreeMap;

@@ -1,8 +1,8 @@
 //! The equations of motion in a basis of the admissible velocities.
 
-use crate::Formulas;
-use crate::basis::{Written, dot, work};
-use expression::{Expression, Graph};
+use super::Formulas;
+use super::basis::{Written, dot, work};
+use crate::{Expression, Graph};
 
 /// The equations of motion in a basis of the admissible velocities, `q' = W xi + v_b` and `xi' = f(t, q, xi)`.
 ///
