@@ -1,7 +1,7 @@
 //! Reduced equations derived from texts.
 
-use expression::{Names, Tape};
 use expression::formulas::{Formulas, Parameters, ReducedFormulas, Unit, Words};
+use expression::{Names, Tape};
 
 /// A system by its coordinates (angles with a star), parameters, Lagrangian and constraints.
 fn formulas(coordinates: &str, parameters: &str, lagrangian: &str, constraints: &[&str]) -> (Formulas, Names) {

@@ -45,12 +45,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
     /// The bracket of the basis, its velocity, the Lagrangian there with its momenta, and the covector `p . DW_a` of every vector of the basis.
     #[must_use]
     #[inline(always)]
-    pub fn of_slopes(
-        basis: AdmissibleBasis<S, N, M>,
-        velocity: [S; N],
-        l: Dual<S, N>,
-        along: &[[S; N]; N],
-    ) -> Self {
+    pub fn of_slopes(basis: AdmissibleBasis<S, N, M>, velocity: [S; N], l: Dual<S, N>, along: &[[S; N]; N]) -> Self {
         let mut structure = [[S::zero(); N]; N];
         for a in 0..Self::DIMENSION {
             for b in a + 1..Self::DIMENSION {

@@ -1,7 +1,7 @@
 use crate::linear::Singular;
 use crate::{
-    AdmissibleBasis, Dual, HyperDual, Reduced as _, Rows, Saddle, System, constraint_residual, from_fn, mapped, mass_matrix, reaction_rows,
-    redundant_rows,
+    AdmissibleBasis, Dual, HyperDual, Reduced as _, Rows, Saddle, System, constraint_residual, from_fn, mapped,
+    mass_matrix, reaction_rows, redundant_rows,
 };
 use std::ops::Add;
 use thiserror::Error;

@@ -1,7 +1,7 @@
 use crate::tapes::TapePoint;
 use crate::{TextError, TextFunctions, TextModel, Words};
-use expression::formulas::{Formulas, Parameters};
 use dla::ParametrisedMechanics;
+use expression::formulas::{Formulas, Parameters};
 use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, Seeded, SeededMember, System};
 use std::array::from_fn;
 use std::sync::Arc;

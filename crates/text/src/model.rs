@@ -59,6 +59,9 @@ pub(crate) struct TextPieces {
     pub(crate) model: Arc<TextModel>,
 }
 
+/// Maximum number of terms and factors of all formulas with the derivatives in the coordinates.
+const LARGEST_SLOPES: usize = 1 << 22;
+
 /// Models with the same formulas are equal.
 impl PartialEq for TextModel {
     fn eq(&self, other: &Self) -> bool {
@@ -104,10 +107,14 @@ impl TextModel {
         let basis = formulas.basis.clone().or(derived);
         let given = formulas.clone();
         let Formulas { mut graph, lagrangian, rows, level, positions, force, outputs, .. } = formulas;
-        let places: Vec<u32> = (1..=all.len() as u32).collect();
         let momentum = graph.gradient(lagrangian, &all);
-        let slopes = [graph.gradient(lagrangian, &places), momentum.clone()].concat();
         let mass: Vec<Expression> = [graph.hessian(lagrangian, &all, &all).concat(), momentum.clone()].concat();
+        let fail = |error: expression::Error| TextError { entry: Entry::Lagrangian, problem: error.into() };
+        graph.check().map_err(fail)?;
+        // A long potential has as many long derivatives as it has coordinates.
+        graph.set_limit(LARGEST_SLOPES);
+        let places: Vec<u32> = (1..=all.len() as u32).collect();
+        let slopes = [graph.gradient(lagrangian, &places), momentum.clone()].concat();
         // `A` by rows, then `b`.
         let constraint = [&rows[..], &level].concat();
         let tapes = |formulas: &[Expression], entry| {

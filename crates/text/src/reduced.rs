@@ -2,8 +2,8 @@
 
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextFunctions, TextModel};
-use expression::formulas::{Formulas, ReducedFormulas};
 use expression::Expression;
+use expression::formulas::{Formulas, ReducedFormulas};
 use lagrangian::{Pivots, Reduced, ReducedError, Scalar, StageEvaluation};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -52,7 +52,7 @@ impl Formulas {
     pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<ReducedFormulas> {
         /// The terms and factors of a derivation of about a second.
         const MOST: usize = 320_000;
-        self.graph.narrow(MOST);
+        self.graph.set_limit(MOST);
         self.reduced_along(basis, Written::Shorter)
     }
 
