@@ -107,6 +107,24 @@ impl<const N: usize, const M: usize> TextFunctions<N, M> {
         lagrangian
     }
 
+    /// `L_v`.
+    pub(crate) fn momentum_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N], v: &[S; N]) -> [S; N] {
+        let n = self.n();
+        let mut momentum = [S::zero(); N];
+        momentum[n..].copy_from_slice(&v[n..]);
+        self.model.momentum.evaluate(n, self.point(p, t, q, v), |i, x| momentum[i] = x);
+        momentum
+    }
+
+    /// `L_q` and `L_v`.
+    pub(crate) fn slopes_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
+        let n = self.n();
+        let mut slopes = [[S::zero(); N]; 2];
+        slopes[1][n..].copy_from_slice(&v[n..]);
+        self.model.slopes.evaluate(n, self.point(p, t, q, v), |k, x| slopes[k / n][k % n] = x);
+        slopes
+    }
+
     pub(crate) fn constraint_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N]) -> Constraint<S, N, M> {
         let (n, m) = (self.n(), self.m());
         let (mut a, mut b) = ([[S::zero(); N]; M], [S::zero(); M]);

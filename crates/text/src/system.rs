@@ -1,3 +1,4 @@
+use crate::family::SeededText;
 use crate::{TextFunctions, TextModel};
 use dla::{
     Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, PiecewiseMechanics, RoundedMechanics,
@@ -6,8 +7,9 @@ use dla::{
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dependence, Dual, EnergySlope, Gradients, HyperDual, Lanes,
-    Motion, MotionError, MotionRounding, PowerSources, ReducedError, ReducedSlope, Rounded, RowSpace, Rows, Saddle,
-    Scalar, Seeded, Smoothness, System, constraint_residual, from_fn, inverse_on_basis,
+    Motion, MotionError, MotionRounding, PowerSources, Reduced, ReducedError, ReducedSlope, Rounded, RowSpace, Rows,
+    Saddle, Scalar, Seeded, Smoothness, System, constraint_residual, from_fn, inverse_on_basis, reduced_from_motion,
+    within_rounding,
 };
 use std::sync::Arc;
 
@@ -47,24 +49,6 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         self.0.model()
     }
 
-    /// `L_v`.
-    fn momentum_on<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> [S; N] {
-        let n = self.0.n();
-        let mut p = [S::zero(); N];
-        p[n..].copy_from_slice(&v[n..]);
-        self.model().momentum.evaluate(n, self.0.point(&[], t, q, v), |i, x| p[i] = x);
-        p
-    }
-
-    /// `L_q` and `L_v`.
-    fn slopes_on<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
-        let n = self.0.n();
-        let mut slopes = [[S::zero(); N]; 2];
-        slopes[1][n..].copy_from_slice(&v[n..]);
-        self.model().slopes.evaluate(n, self.0.point(&[], t, q, v), |k, x| slopes[k / n][k % n] = x);
-        slopes
-    }
-
     /// Shows a state on numbers with derivatives along `(dq, dv) = (in_q, in_v) e_j` of eight of the system's own coordinates at a time, and
     /// these coordinates, until all have been shown.
     fn along_each(
@@ -87,7 +71,7 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         let (n, turning) = (self.0.n(), self.0.turning()?);
         let basis = self.0.basis_at(&[], t, q);
         let velocity = basis.combine(xi);
-        let [l_q, p] = self.slopes_on(t, q, &velocity);
+        let [l_q, p] = self.0.slopes_at(&[], t, q, &velocity);
         let mut along = [[Lanes::zero(); N]; N];
         turning.evaluate(n, self.0.point(&[], t, q, &[]), |k, slope| {
             along[k / (n * n)][k % n] += p[k / n % n] * slope;
@@ -115,16 +99,16 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
     }
 
     fn energy(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> f64 {
-        let p = self.momentum_on(t, q, v);
+        let p = self.0.momentum_at(&[], t, q, v);
         (0..N).fold(-self.0.lagrangian_at(&[], t, q, v), |energy, i| energy + p[i] * v[i])
     }
 
     fn momentum(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; N] {
-        self.momentum_on(t, q, v)
+        self.0.momentum_at(&[], t, q, v)
     }
 
     fn momentum_and_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], Constraint<f64, N, M>) {
-        (self.momentum_on(t, q, v), self.0.constraint_at(&[], t, q))
+        (self.0.momentum_at(&[], t, q, v), self.0.constraint_at(&[], t, q))
     }
 
     fn mass_matrix(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], [[f64; N]; N]) {
@@ -141,14 +125,14 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
     }
 
     fn slopes(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Slopes<N> {
-        let [l_q, l_v] = self.slopes_on(t, q, v);
+        let [l_q, l_v] = self.0.slopes_at(&[], t, q, v);
         Slopes { l_q, l_v, force: self.0.force_at(&[], t, q, v) }
     }
 
     fn second_slopes(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> SecondSlopes<N> {
         let (mut l_q, mut l_qq, mut l_qv) = ([0.0; N], [[0.0; N]; N], [[0.0; N]; N]);
         self.along_each([q, v], [1.0, 0.0], |own, q, v| {
-            let slopes = self.slopes_on(Dual::fixed(t), q, v);
+            let slopes = self.0.slopes_at(&[], Dual::fixed(t), q, v);
             for i in 0..N {
                 l_q[i] = slopes[0][i].re;
                 for (k, j) in own.clone().enumerate() {
@@ -169,7 +153,7 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
             (node.e1[i], node.e2[i], node.e12[i][i]) = (-v[i], v[i], -1.0);
         }
         self.along_each([q, v], [ahead, 1.0], |own, q, v| {
-            let [l_q, l_v] = self.slopes_on(Dual::fixed(t), q, v);
+            let [l_q, l_v] = self.0.slopes_at(&[], Dual::fixed(t), q, v);
             for i in 0..self.0.n() {
                 node.e1[i] = back * l_q[i].re - l_v[i].re;
                 node.e2[i] = ahead * l_q[i].re + l_v[i].re;
@@ -276,8 +260,26 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
         self.0.holonomic_at(&[], t, q)
     }
 
+    fn position_misses(&self, t: f64, q: &[f64; N]) -> Option<[Option<Dual<f64, N>>; M]> {
+        let g = self.0.holonomic_at(&[], t, q)?;
+        // The rates of the functions are rows of the constraint.
+        let (a, _) = self.0.constraint_at(&[], t, q);
+        let miss = |k: usize, g: f64| Dual { re: g, eps: a[k] };
+        Some(from_fn(|k| g[k].map(|g| within_rounding(q, miss(k, g)))))
+    }
+
     fn add_position_curvature(&self, t: f64, q: &[f64; N], factors: &[f64; M], matrix: &mut [[f64; N]; N]) {
-        Mechanics::add_position_curvature(&self.0, t, q, factors, matrix);
+        let first = self.model().constraints() - self.model().positions();
+        self.along_each([q, q], [1.0, 0.0], |own, q, _| {
+            let (a, _) = self.0.constraint_at(&[], Dual::fixed(t), q);
+            for k in first..self.model().constraints() {
+                for (row, a) in matrix.iter_mut().zip(&a[k]) {
+                    for (entry, slope) in row[own.clone()].iter_mut().zip(a.eps) {
+                        *entry += factors[k] * slope;
+                    }
+                }
+            }
+        });
     }
 
     fn basis(&self, t: f64, q: &[f64; N]) -> Option<AdmissibleBasis<f64, N, M>> {
@@ -298,7 +300,7 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
         // Along the motion at frozen velocity, `(t', q', v') = (1, v, 0)`.
         let along_t = Dual { re: t, eps: [1.0] };
         let along_q = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-        let [l_q, l_v] = self.slopes_on(along_t, &along_q, &v.map(Dual::fixed));
+        let [l_q, l_v] = self.0.slopes_at(&[], along_t, &along_q, &v.map(Dual::fixed));
         let (rows, b): Constraint<Dual<f64, 1>, N, M> = self.0.constraint_at(&[], along_t, &along_q);
         let force = self.0.force_at(&[], t, q, v);
         let a = rows.map(|row| row.map(|x| x.re));
@@ -310,6 +312,19 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
             level: from_fn(|k| -(0..N).fold(b[k].eps[0], |rate, i| rate + rows[k][i].eps[0] * v[i])),
         };
         Motion::solved(&saddle, t, Some(&self.0.basis_of(&[], t, q, || a)), || self.redundant_rows(t, q, v))
+    }
+
+    fn reduced_slope(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<ReducedSlope<N>, ReducedError> {
+        let velocity = self.velocity_of(t, q, xi)?;
+        let acceleration = match self.0.reduced_motion(t, q, xi) {
+            Some(acceleration) if acceleration[..N - M].iter().all(|x| x.is_finite()) => acceleration,
+            // Of equations that are degenerate the motion tells where.
+            _ => {
+                let Motion { acceleration, .. } = self.motion(t, q, &velocity)?;
+                reduced_from_motion(&self.0, t, q, xi, (&velocity, &acceleration))?
+            }
+        };
+        Ok(ReducedSlope { velocity, acceleration })
     }
 
     fn inverse_reduced_mass(
@@ -345,10 +360,8 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
         force_power(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;
         lagrangian_power(t: f64, q: &[f64; N], v: &[f64; N]) -> f64;
         rows_along(t: f64, q: &[f64; N], in_t: f64, in_q: &[f64; N]) -> [[Dual<f64, 1>; N]; M];
-        position_misses(t: f64, q: &[f64; N]) -> Option<[Option<Dual<f64, N>>; M]>;
         velocity_of(t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<[f64; N], ReducedError>;
         quasi_velocities(t: f64, q: &[f64; N], v: &[f64; N]) -> Result<[f64; N], ReducedError>;
-        reduced_slope(t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<ReducedSlope<N>, ReducedError>;
         collocate(stages: Collocation<'_, N>) -> Option<CollocationOutcome<N>>;
     }
 }
@@ -367,11 +380,11 @@ impl<const N: usize, const M: usize> Diagnosis<N, M> for TextSystem<N, M> {
 
 impl<const N: usize, const M: usize> RoundedMechanics<N, M> for TextSystem<N, M> {
     fn momentum_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
-        self.momentum_on(t, q, v)
+        self.0.momentum_at(&[], t, q, v)
     }
 
     fn slope_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
-        self.slopes_on(t, q, v)[0]
+        self.0.slopes_at(&[], t, q, v)[0]
     }
 
     by_functions! { RoundedMechanics:
@@ -386,6 +399,10 @@ impl<const N: usize, const M: usize> RoundedMechanics<N, M> for TextSystem<N, M>
 }
 
 impl<const N: usize, const M: usize> SeededMechanics<N, M> for TextSystem<N, M> {
+    fn gradients(&self) -> Box<dyn Gradients<N, M> + '_> {
+        Box::new(SeededText { functions: self.0.clone(), p: Vec::new() })
+    }
+
     fn near_seeded(
         &self,
         t: f64,
@@ -397,7 +414,6 @@ impl<const N: usize, const M: usize> SeededMechanics<N, M> for TextSystem<N, M> 
     }
 
     by_functions! { SeededMechanics:
-        gradients() -> Box<dyn Gradients<N, M> + '_>;
         velocity_seeded(t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
         reduced_motion_seeded(t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
     }
