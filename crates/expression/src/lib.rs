@@ -1,6 +1,6 @@
 //! Expressions from text: parsed, simplified, differentiated, and evaluated on any scalar or printed as Rust.
 //!
-//! This crate knows no mechanics. A name is a position in a table, and what it means is said by who asks: a variable, a constant, or the
+//! Mechanics is known to the module [`formulas`] alone, which says what the texts of a system mean. Elsewhere a name is a position in a table, and what it means is said by who asks: a variable, a constant, or the
 //! expression that it abbreviates.
 //!
 //! 1. [`parse`] reads a text, with the [`Names`] that it may use, within [`Limits`]. An [`Error`] says which column is wrong, and what
@@ -48,10 +48,10 @@
 
 mod corners;
 mod error;
+pub mod formulas;
 mod function;
 mod graph;
 mod interval;
-mod limits;
 mod names;
 mod parser;
 mod series;
@@ -63,9 +63,8 @@ pub use corners::Corners;
 pub use error::Error;
 pub use function::Function;
 pub use graph::{Expression, Graph, Statements, Turned};
-pub use limits::Limits;
 pub use names::{Names, nearest};
-pub use parser::{parse, parse_within};
+pub use parser::{Limits, parse, parse_within};
 pub use series::Series;
 pub use syntax::Syntax;
 pub use tape::{Cost, Tape};

@@ -12,6 +12,7 @@
 
 mod common;
 mod corners;
+mod formulas;
 mod hostile;
 mod large;
 mod parsing;

@@ -39,6 +39,13 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
             true => Self::with_slopes(system, t, q, xi)?,
             false => Self::with_slopes_in_turn(system, t, q, xi)?,
         };
+        Some(Self::of_slopes(basis, velocity, l, &along))
+    }
+
+    /// The bracket of the basis, its velocity, the Lagrangian there with its momenta, and the covector `p . DW_a` of every vector of the basis.
+    #[must_use]
+    #[inline(always)]
+    pub fn of_slopes(basis: AdmissibleBasis<S, N, M>, velocity: [S; N], l: Dual<S, N>, along: &[[S; N]; N]) -> Self {
         let mut structure = [[S::zero(); N]; N];
         for a in 0..Self::DIMENSION {
             for b in a + 1..Self::DIMENSION {
@@ -51,7 +58,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
                 structure[b][a] = -bracket;
             }
         }
-        Some(Self { basis, velocity, momentum: l.eps, lagrangian: l.re, structure })
+        Self { basis, velocity, momentum: l.eps, lagrangian: l.re, structure }
     }
 
     /// The basis, the velocity, the Lagrangian in it, and `p . DW_a`, a covector, of every vector of the basis.
@@ -242,7 +249,17 @@ pub fn inverse_reduced_mass<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     basis: &AdmissibleBasis<f64, N, M>,
 ) -> Result<[[f64; N]; N], Singular> {
-    let (_, mass) = mass_matrix(system, t, q, v);
+    inverse_on_basis(&mass_matrix(system, t, q, v).1, basis)
+}
+
+/// The inverse of a mass matrix on the distribution, as [`inverse_reduced_mass`].
+///
+/// # Errors
+/// [`Singular`] where the mass matrix does not determine the quasi-velocities.
+pub fn inverse_on_basis<const N: usize, const M: usize>(
+    mass: &[[f64; N]; N],
+    basis: &AdmissibleBasis<f64, N, M>,
+) -> Result<[[f64; N]; N], Singular> {
     let dimension = basis.vectors().len();
     // The identity fills the places that are not used.
     let reduced: [[f64; N]; N] = from_fn(|a| {

@@ -59,7 +59,7 @@ mod with_basis;
 pub use along::acceleration_along;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
-pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
+pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_on_basis, inverse_reduced_mass};
 pub use by_hand::{Reduced, StageEvaluation};
 pub use called::Called;
 pub use classify::{
@@ -84,10 +84,10 @@ pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
 pub use pivots::Pivots;
 pub use power::{PowerSources, force_power, lagrangian_power};
-pub use reaction::{position_misses, position_residual, position_rows, reaction_rows, rows_along};
+pub use reaction::{position_misses, position_residual, position_rows, reaction_rows, rows_along, within_rounding};
 pub use reduced::{
-    ReducedError, ReducedSlope, derived_acceleration, quasi_velocities, reduced_acceleration, reduced_slope,
-    velocity_of,
+    ReducedError, ReducedSlope, derived_acceleration, quasi_velocities, reduced_acceleration, reduced_from_motion,
+    reduced_slope, velocity_of,
 };
 pub use rounded::Rounded;
 pub use rounding::{MotionRounding, bracket_rounding, reduced_rounding};

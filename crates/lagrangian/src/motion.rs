@@ -1,7 +1,7 @@
 use crate::linear::Singular;
 use crate::{
-    Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mapped, mass_matrix, reaction_rows,
-    redundant_rows,
+    AdmissibleBasis, Dual, HyperDual, Reduced as _, Rows, Saddle, System, constraint_residual, from_fn, mapped,
+    mass_matrix, reaction_rows, redundant_rows,
 };
 use std::ops::Add;
 use thiserror::Error;
@@ -92,12 +92,26 @@ impl<const N: usize, const M: usize> Motion<N, M> {
     /// [`MotionError`] where the mass matrix or the constraint is degenerate.
     pub fn automatic<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
         let saddle = Self::equations(system, t, q, v);
-        let basis = system.admissible_basis(t, q);
+        Self::solved(&saddle, t, system.admissible_basis(t, q).as_ref(), || redundant_rows(system, t, q, v))
+    }
+
+    /// The solution of the equations of motion at the time `t` (s), in a basis of the admissible velocities if there is one. If rows depend on
+    /// one another, `redundant` gives those that imply the others.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    #[inline(always)]
+    pub fn solved(
+        saddle: &Saddle<N, M>,
+        t: f64,
+        basis: Option<&AdmissibleBasis<f64, N, M>>,
+        redundant: impl FnOnce() -> Option<Rows>,
+    ) -> Result<Self, MotionError> {
         let of =
             |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: mapped(&lambda, |l| -l) };
-        match saddle.solve(basis.as_ref()) {
+        match saddle.solve(basis) {
             Ok(solution) => Ok(of(solution)),
-            Err(source) => redundant_rows(system, t, q, v)
+            Err(source) => redundant()
                 .map_or(Err(source), |rows| saddle.solve_some(rows))
                 .map(of)
                 .map_err(|source| MotionError { time: t, source }),

@@ -94,12 +94,15 @@ where
     Sys: System<N, M>,
 {
     let g: [Option<Dual<f64, N>>; M] = system.holonomic(Dual::fixed(t), &Dual::variables(q))?;
-    Some(g.map(|g| {
-        g.map(|g| {
-            let rounding: f64 = (0..N).map(|i| (g.eps[i] * q[i]).abs()).sum();
-            if g.re.abs() <= 2.0 * f64::EPSILON * rounding { Dual { re: 0.0, ..g } } else { g }
-        })
-    }))
+    Some(g.map(|g| g.map(|g| within_rounding(q, g))))
+}
+
+/// A value with its gradient in the coordinates `q`; zero if the rounding of the coordinates alone may bring it.
+#[must_use]
+#[inline(always)]
+pub fn within_rounding<const N: usize>(q: &[f64; N], g: Dual<f64, N>) -> Dual<f64, N> {
+    let rounding: f64 = (0..N).map(|i| (g.eps[i] * q[i]).abs()).sum();
+    if g.re.abs() <= 2.0 * f64::EPSILON * rounding { Dual { re: 0.0, ..g } } else { g }
 }
 
 /// The largest `|g_k(q, t)|` of the constraints on positions; zero without such constraints.

@@ -127,9 +127,23 @@ pub fn reduced_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
     q: &[f64; N],
     xi: &[f64; N],
 ) -> Result<[f64; N], ReducedError> {
-    let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
     let v = velocity_of(system, t, q, xi)?;
     let Motion { acceleration, .. } = Motion::of(system, t, q, &v)?;
+    reduced_from_motion(system, t, q, xi, (&v, &acceleration))
+}
+
+/// The accelerations `xi'` if `v` is the velocity of the quasi-velocities and `acceleration` its rate.
+///
+/// # Errors
+/// [`ReducedError`] where there is no basis, or where it is degenerate.
+pub fn reduced_from_motion<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    xi: &[f64; N],
+    (v, acceleration): (&[f64; N], &[f64; N]),
+) -> Result<[f64; N], ReducedError> {
+    let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
     let along: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
     let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &mapped(xi, Dual::fixed))?;
     let rest = from_fn(|i| acceleration[i] - turning[i].eps[0]);

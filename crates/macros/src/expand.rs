@@ -1,6 +1,6 @@
 use crate::read::{Described, Kind};
 use expression::Expression;
-use formulas::{Formulas, Parameters, ReducedFormulas, TextError, Unit};
+use expression::formulas::{Formulas, Parameters, ReducedFormulas, TextError, Unit};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use std::str::FromStr;

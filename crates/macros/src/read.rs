@@ -1,4 +1,4 @@
-use formulas::{Entry, Unit, Words};
+use expression::formulas::{Entry, Unit, Words};
 use proc_macro2::Span;
 use quote::ToTokens;
 use syn::ext::IdentExt;

@@ -1,6 +1,7 @@
 use crate::family::FamilySystem;
 use crate::{FREE, Family, TextModel, TextStart, TextSystem};
 use dla::{CompiledShape, Mechanism, ParametrisedMechanism, Shapes};
+use std::fmt;
 use std::sync::Arc;
 
 /// Maximum number of coordinates of a system of text.
@@ -8,19 +9,20 @@ pub const MOST_COORDINATES: usize = 12;
 /// Maximum number of constraints of a system of text.
 pub const MOST_CONSTRAINTS: usize = 6;
 
-/// A system of text as an object.
+/// A system of text in one of a few shapes, each of which is compiled once.
 ///
-/// The mechanism has the coordinates and constraints of the model, and perhaps more behind them that pad the system to a shape: these
+/// The mechanism has the coordinates and constraints of the model, and perhaps more behind them that pad the system to its shape: these
 /// begin at rest at zero, and stay there.
-pub trait TextMechanics: Send + Sync {
-    /// The model that the texts describe.
-    fn model(&self) -> &TextModel;
+pub struct TextMechanics {
+    model: Arc<TextModel>,
+    shape: Shape,
+}
 
-    /// The system for runs.
-    fn mechanism(&self) -> Box<dyn Mechanism + '_>;
-
-    /// The system as a member of the family that started it ([`Family::started`]); `None` for any other system.
-    fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>>;
+enum Shape {
+    Small(Shaped<4, 2>),
+    Middle(Shaped<8, 5>),
+    /// It has room for [`MOST_COORDINATES`] with any number of constraints up to [`MOST_CONSTRAINTS`].
+    Large(Shaped<18, 6>),
 }
 
 /// A system of text in one shape.
@@ -30,12 +32,69 @@ struct Shaped<const N: usize, const M: usize> {
     family: Option<(FamilySystem<N, M>, [f64; FREE])>,
 }
 
-impl<const N: usize, const M: usize> TextMechanics for Shaped<N, M>
+impl TextMechanics {
+    /// The system of a model. If the text gives no basis, the system has one for the neighbourhood of its start. Returns `None` if the model
+    /// exceeds [`MOST_COORDINATES`] or [`MOST_CONSTRAINTS`].
+    #[must_use]
+    pub fn new(model: &Arc<TextModel>, start: &TextStart) -> Option<Self> {
+        Self::in_first_shape(model, start, None)
+    }
+
+    /// The system of a member of a family, as [`new`](Self::new).
+    #[must_use]
+    pub fn of_family(family: &Family, start: &TextStart) -> Option<Self> {
+        Self::in_first_shape(&family.member, start, Some(family))
+    }
+
+    /// The system in the first shape that has room for it.
+    fn in_first_shape(model: &Arc<TextModel>, start: &TextStart, family: Option<&Family>) -> Option<Self> {
+        let shape = (Shaped::new(model, start, family).map(Shape::Small))
+            .or_else(|| Shaped::new(model, start, family).map(Shape::Middle))
+            .or_else(|| Shaped::new(model, start, family).map(Shape::Large))?;
+        Some(Self { model: Arc::clone(model), shape })
+    }
+
+    /// The model that the texts describe.
+    #[must_use]
+    pub fn model(&self) -> &TextModel {
+        &self.model
+    }
+
+    /// The system for runs.
+    #[must_use]
+    pub fn mechanism(&self) -> Box<dyn Mechanism + '_> {
+        match &self.shape {
+            Shape::Small(shaped) => shaped.mechanism(),
+            Shape::Middle(shaped) => shaped.mechanism(),
+            Shape::Large(shaped) => shaped.mechanism(),
+        }
+    }
+
+    /// The system as a member of its family ([`of_family`](Self::of_family)); `None` for any other system.
+    #[must_use]
+    pub fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>> {
+        match &self.shape {
+            Shape::Small(shaped) => shaped.member(),
+            Shape::Middle(shaped) => shaped.member(),
+            Shape::Large(shaped) => shaped.member(),
+        }
+    }
+}
+
+impl fmt::Debug for TextMechanics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.mechanism().fmt(f)
+    }
+}
+
+impl<const N: usize, const M: usize> Shaped<N, M>
 where
     Shapes: CompiledShape<N, M>,
 {
-    fn model(&self) -> &TextModel {
-        self.system.model()
+    fn new(model: &Arc<TextModel>, start: &TextStart, family: Option<&Family>) -> Option<Self> {
+        let system = TextSystem::new(Arc::clone(model), 0.0, &start.q)?;
+        let family = family.and_then(|family| Some((family.shaped(0.0, &start.q)?, *family.values())));
+        Some(Self { system, family })
     }
 
     fn mechanism(&self) -> Box<dyn Mechanism + '_> {
@@ -46,39 +105,4 @@ where
         let (family, values) = self.family.as_ref()?;
         Some(Shapes::member(&self.system, &(), family, *values))
     }
-}
-
-/// The system of a model. If the text gives no basis, the system has one for the neighbourhood of its start. Returns `None` if the model
-/// exceeds [`MOST_COORDINATES`] or [`MOST_CONSTRAINTS`].
-#[must_use]
-pub fn started(model: &Arc<TextModel>, start: &TextStart) -> Option<Box<dyn TextMechanics>> {
-    in_shape(model, start, None)
-}
-
-impl Family {
-    /// The system of a member of the family, as [`started`].
-    #[must_use]
-    pub fn started(&self, start: &TextStart) -> Option<Box<dyn TextMechanics>> {
-        in_shape(&self.member, start, Some(self))
-    }
-}
-
-/// The system in the first shape that has room for it; each shape is compiled once. The last shape has room for twelve coordinates with any
-/// number of constraints up to six.
-fn in_shape(model: &Arc<TextModel>, start: &TextStart, family: Option<&Family>) -> Option<Box<dyn TextMechanics>> {
-    let shapes = [shaped::<3, 1>, shaped::<4, 2>, shaped::<6, 3>, shaped::<8, 4>, shaped::<12, 6>, shaped::<18, 6>];
-    shapes.into_iter().find_map(|shaped| shaped(model, start, family))
-}
-
-fn shaped<const N: usize, const M: usize>(
-    model: &Arc<TextModel>,
-    start: &TextStart,
-    family: Option<&Family>,
-) -> Option<Box<dyn TextMechanics>>
-where
-    Shapes: CompiledShape<N, M>,
-{
-    let system = TextSystem::<N, M>::new(Arc::clone(model), 0.0, &start.q)?;
-    let family = family.and_then(|family| Some((family.shaped(0.0, &start.q)?, *family.values())));
-    Some(Box::new(Shaped { system, family }))
 }

@@ -1,8 +1,8 @@
 use crate::tapes::TapePoint;
-use crate::{TextError, TextModel, TextSystem, Words};
-use ::formulas::{Formulas, Parameters};
+use crate::{TextError, TextFunctions, TextModel, Words};
 use dla::ParametrisedMechanics;
-use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, Seeded, SeededMember, System};
+use expression::formulas::{Formulas, Parameters};
+use lagrangian::{AdmissibleBasis, Along, Constraint, Dual, Gradients, Scalar, Seeded};
 use std::array::from_fn;
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ impl Family {
     /// Returns `None` if the shape has no room for the system.
     #[must_use]
     pub fn shaped<const N: usize, const M: usize>(&self, t: f64, q: &[f64]) -> Option<FamilySystem<N, M>> {
-        let member = TextSystem::new(Arc::clone(&self.member), t, q)?;
+        let member = TextFunctions::new(Arc::clone(&self.member), t, q)?;
         Some(FamilySystem(member.of_model(&self.free)))
     }
 
@@ -68,37 +68,63 @@ impl Family {
 
 /// A [`Family`] with systems of `N` coordinates and `M` constraints.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FamilySystem<const N: usize, const M: usize>(TextSystem<N, M>);
+pub struct FamilySystem<const N: usize, const M: usize>(TextFunctions<N, M>);
 
 /// The basis zero is the one it has.
 impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, FREE> for FamilySystem<N, M> {
     fn at(&self, basis: u64, p: &[Seeded; FREE]) -> Box<dyn Gradients<N, M> + '_> {
-        Box::new(SeededMember { family: Self(self.0.rebased(basis)), parameters: *p })
+        Box::new(SeededText { functions: self.0.rebased(basis), p: p.to_vec() })
     }
 }
 
-impl<const N: usize, const M: usize> Parametrised<N, M, FREE> for FamilySystem<N, M> {
-    fn lagrangian<S: Scalar>(&self, p: &[S; FREE], t: S, q: &[S; N], v: &[S; N]) -> S {
-        self.0.lagrangian_at(p, t, q, v)
+/// The functions of a system of text on numbers with derivatives, at these values of the parameters that its model leaves free.
+pub(crate) struct SeededText<const N: usize, const M: usize> {
+    pub(crate) functions: TextFunctions<N, M>,
+    pub(crate) p: Vec<Seeded>,
+}
+
+impl<const N: usize, const M: usize> SeededText<N, M> {
+    fn fixed(&self) -> Vec<Along> {
+        self.p.iter().map(|p| Dual::fixed(*p)).collect()
+    }
+}
+
+impl<const N: usize, const M: usize> Gradients<N, M> for SeededText<N, M> {
+    fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded {
+        self.functions.lagrangian_at(&self.p, t, q, v)
     }
 
-    fn constraint<S: Scalar>(&self, p: &[S; FREE], t: S, q: &[S; N]) -> Constraint<S, N, M> {
-        self.0.constraint_at(p, t, q)
+    fn momentum(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
+        self.functions.momentum_at(&self.p, t, q, v)
     }
 
-    fn force<S: Scalar>(&self, p: &[S; FREE], t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.0.force_at(p, t, q, v)
+    fn momentum_rate(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N], a: &[Seeded; N]) -> [Seeded; N] {
+        let along = |x: &[Seeded; N], rate: &[Seeded; N]| from_fn(|i| Dual { re: x[i], eps: [rate[i]] });
+        let t = Dual { re: t, eps: [Seeded::constant(1.0)] };
+        self.functions.momentum_at(&self.fixed(), t, &along(q, v), &along(v, a)).map(|p: Along| p.eps[0])
     }
 
-    fn admissible_basis<S: Scalar>(&self, p: &[S; FREE], t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
-        Some(self.0.basis_at(p, t, q))
+    fn slope(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
+        self.functions.slopes_at(&self.p, t, q, v)[0]
     }
 
-    fn holonomic<S: Scalar>(&self, p: &[S; FREE], t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
-        self.0.holonomic_at(p, t, q)
+    fn force(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Seeded; N]> {
+        self.functions.force_at(&self.p, t, q, v)
     }
 
-    fn angles(&self) -> [bool; N] {
-        System::angles(&self.0)
+    fn constraint_along(&self, t: Along, q: &[Along; N]) -> Constraint<Along, N, M> {
+        self.functions.constraint_at(&self.fixed(), t, q)
+    }
+
+    fn basis_along(&self, t: Along, q: &[Along; N]) -> Option<AdmissibleBasis<Along, N, M>> {
+        Some(self.functions.basis_at(&self.fixed(), t, q))
+    }
+
+    fn holonomic(&self, t: Seeded, q: &[Seeded; N]) -> Option<[Option<Seeded>; M]> {
+        self.functions.holonomic_at(&self.p, t, q)
+    }
+
+    fn nonlinear(&self, _t: Seeded, _q: &[Seeded; N], _v: &[Seeded; N]) -> Option<[Option<Dual<Seeded, N>>; M]> {
+        None
     }
 }

@@ -1,7 +1,7 @@
 //! What the constraints of a system are at its start.
 
 use crate::{TextModel, TextStart};
-use ::formulas::Formulas;
+use expression::formulas::Formulas;
 use expression::{Expression, Graph, Tape};
 use lagrangian::Pivots;
 use nalgebra::DMatrix;

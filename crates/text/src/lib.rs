@@ -4,8 +4,8 @@
 //! 2. A [`TextModel`] is what they mean: checked, derived and put on tapes. A [`TextError`] says which text is wrong, in which column, and
 //!    what is known there.
 //! 3. A [`TextStart`] is the admissible state that is nearest to a given one.
-//! 4. [`TextMechanics`] is the system as an object, which [`started`] makes. It has one of a few shapes, of which the smallest that has
-//!    room is filled up: with coordinates of unit mass that rest, and with constraints that hold them.
+//! 4. [`TextMechanics`] is the system from a start on. It has one of a few shapes, of which the smallest that has room is filled up: with
+//!    coordinates of unit mass that rest, and with constraints that hold them. An evaluation costs no more for it.
 //!
 //! ```
 //! use text::{TextModel, Unit, Words};
@@ -30,6 +30,7 @@
 
 mod any;
 mod family;
+mod functions;
 mod geometry;
 mod model;
 mod reduced;
@@ -39,9 +40,10 @@ mod system;
 mod tapes;
 mod written;
 
-pub use ::formulas::{Entry, Problem, TextError, Unit, Words};
-pub use any::{MOST_CONSTRAINTS, MOST_COORDINATES, TextMechanics, started};
+pub use any::{MOST_CONSTRAINTS, MOST_COORDINATES, TextMechanics};
+pub use expression::formulas::{Entry, Problem, TextError, Unit, Words};
 pub use family::{FREE, Family, FamilySystem};
+pub use functions::TextFunctions;
 pub use geometry::Geometry;
 pub use model::{Coordinate, TextModel};
 pub use start::{Moved, StartError, TextStart};

@@ -1,9 +1,9 @@
 use crate::reduced::EquationsOfBases;
 use crate::tapes::{TapePoint, Tapes};
 use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
-use ::formulas::{Formulas, Parameters, RowElimination};
+use expression::formulas::{Formulas, Parameters, RowElimination};
 use expression::{Corners, Expression};
-use lagrangian::{Dual, Pivots};
+use lagrangian::Pivots;
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
@@ -34,6 +34,11 @@ pub struct TextModel {
     pub(crate) force: Option<Tapes>,
     /// A basis of the admissible velocities that holds everywhere, given or found; `None` if a basis holds near a configuration only.
     pub(crate) basis: Option<Tapes>,
+    /// `L_v`.
+    pub(crate) momentum: Tapes,
+    /// `L_q`, then `L_v`.
+    pub(crate) slopes: Tapes,
+    /// The mass matrix `L_vv` by rows, then `L_v`.
     pub(crate) mass: Tapes,
     pub(crate) outputs: Vec<String>,
     pub(crate) told: Tapes,
@@ -53,6 +58,9 @@ pub(crate) struct TextPieces {
     /// The system with variables for the sides of its corners.
     pub(crate) model: Arc<TextModel>,
 }
+
+/// Maximum number of terms and factors of all formulas with the derivatives in the coordinates.
+const LARGEST_SLOPES: usize = 1 << 22;
 
 /// Models with the same formulas are equal.
 impl PartialEq for TextModel {
@@ -99,7 +107,14 @@ impl TextModel {
         let basis = formulas.basis.clone().or(derived);
         let given = formulas.clone();
         let Formulas { mut graph, lagrangian, rows, level, positions, force, outputs, .. } = formulas;
-        let mass: Vec<Expression> = graph.hessian(lagrangian, &all, &all).concat();
+        let momentum = graph.gradient(lagrangian, &all);
+        let mass: Vec<Expression> = [graph.hessian(lagrangian, &all, &all).concat(), momentum.clone()].concat();
+        let fail = |error: expression::Error| TextError { entry: Entry::Lagrangian, problem: error.into() };
+        graph.check().map_err(fail)?;
+        // A long potential has as many long derivatives as it has coordinates.
+        graph.set_limit(LARGEST_SLOPES);
+        let places: Vec<u32> = (1..=all.len() as u32).collect();
+        let slopes = [graph.gradient(lagrangian, &places), momentum.clone()].concat();
         // `A` by rows, then `b`.
         let constraint = [&rows[..], &level].concat();
         let tapes = |formulas: &[Expression], entry| {
@@ -118,6 +133,8 @@ impl TextModel {
             holonomic: tapes(&positions, Entry::System)?,
             force: force.map(|force| tapes(&force, Entry::System)).transpose()?,
             basis: basis.as_ref().map(|basis| tapes(basis, Entry::Basis)).transpose()?,
+            momentum: tapes(&momentum, Entry::Lagrangian)?,
+            slopes: tapes(&slopes, Entry::Lagrangian)?,
             mass: tapes(&mass, Entry::Lagrangian)?,
             outputs: words.outputs.iter().map(|(name, _)| name.clone()).collect(),
             told: tapes(&outputs, Entry::System)?,
@@ -213,13 +230,9 @@ impl TextModel {
     /// The energy `v . L_v - L` (J).
     #[must_use]
     pub fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
-        let n = self.coordinates.len();
-        // Along `v` alone.
-        let rates: Vec<Dual<f64, 1>> = v.iter().map(|&v| Dual { re: v, eps: [v] }).collect();
-        let places: Vec<Dual<f64, 1>> = q.iter().map(|&q| Dual::fixed(q)).collect();
-        let mut lagrangian = Dual::fixed(0.0);
-        self.lagrangian.evaluate(n, TapePoint::new(Dual::fixed(t), &places, &rates), |_, x| lagrangian = x);
-        lagrangian.eps[0] - lagrangian.re
+        let mut energy = -self.lagrangian_at(t, q, v);
+        self.momentum.evaluate(self.coordinates.len(), TapePoint::new(t, q, v), |i, p| energy += v[i] * p);
+        energy
     }
 
     pub(crate) fn lagrangian_at(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -256,7 +269,11 @@ impl TextModel {
     pub(crate) fn mass_at(&self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
         let n = self.coordinates.len();
         let mut mass = DMatrix::zeros(n, n);
-        self.mass.evaluate(n, TapePoint::new(t, q, v), |k, x| mass[(k / n, k % n)] = x);
+        self.mass.evaluate(n, TapePoint::new(t, q, v), |k, x| {
+            if k < n * n {
+                mass[(k / n, k % n)] = x;
+            }
+        });
         mass
     }
 }

@@ -1,9 +1,9 @@
 //! The reduced equations of a system of text, derived when they are first asked for.
 
 use crate::tapes::{TapePoint, Tapes};
-use crate::{TextModel, TextSystem};
-use ::formulas::{Formulas, ReducedFormulas};
+use crate::{TextFunctions, TextModel};
 use expression::Expression;
+use expression::formulas::{Formulas, ReducedFormulas};
 use lagrangian::{Pivots, Reduced, ReducedError, Scalar, StageEvaluation};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -22,6 +22,7 @@ struct ReducedTapes {
 #[derive(Debug, Default)]
 pub(crate) struct EquationsOfBasis {
     velocity: OnceLock<Option<Tapes>>,
+    turning: OnceLock<Option<Tapes>>,
     reduced: OnceLock<Option<ReducedTapes>>,
 }
 
@@ -72,6 +73,15 @@ impl TextModel {
         Tapes::new(&formulas.graph, &velocity).ok()
     }
 
+    /// The derivatives of the basis in use in the coordinates, `dW_ai/dq_j` at the place `(a n + i) n + j`.
+    fn turning(&self, pivots: &Pivots) -> Option<Tapes> {
+        let (mut formulas, basis) = self.formulas_in_basis(pivots);
+        let places: Vec<u32> = (0..formulas.n).map(|i| formulas.coordinate(i)).collect();
+        let turning = formulas.graph.jacobian(&basis.concat(), &places).concat();
+        formulas.graph.check().ok()?;
+        Tapes::new(&formulas.graph, &turning).ok()
+    }
+
     fn derived(&self, pivots: &Pivots) -> Option<ReducedTapes> {
         let (formulas, reduced) = self.reduced_formulas(pivots)?;
         let ReducedFormulas { acceleration, reconstruction, stands_alone, .. } = reduced;
@@ -97,14 +107,19 @@ impl TextModel {
     }
 }
 
-impl<const N: usize, const M: usize> TextSystem<N, M> {
+impl<const N: usize, const M: usize> TextFunctions<N, M> {
+    /// The derivatives of the basis, as formulas; `None` if they are too large.
+    pub(crate) fn turning(&self) -> Option<&Tapes> {
+        self.equations.turning.get_or_init(|| self.model.clocked(|| self.model.turning(&self.pivots))).as_ref()
+    }
+
     fn equations(&self) -> Option<&ReducedTapes> {
         self.equations.reduced.get_or_init(|| self.model.clocked(|| self.model.derived(&self.pivots))).as_ref()
     }
 }
 
 /// By computer algebra: `xi'` as formulas in the basis in use.
-impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
+impl<const N: usize, const M: usize> Reduced<N, M> for TextFunctions<N, M> {
     const STAGES: StageEvaluation = StageEvaluation::InArrays;
 
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {

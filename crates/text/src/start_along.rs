@@ -95,7 +95,7 @@ impl Family {
         let mass = self.member.mass_at(0.0, &start.q, first.as_slice());
         if !left_out.is_empty() {
             let seeded: Vec<Along> = first.iter().map(|v| along(*v, 0.0)).collect();
-            let changes = derivatives(&self.free.mass, n, (&q, &seeded, p), n * n);
+            let changes = derivatives(&self.free.mass, n, (&q, &seeded, p), n * n + n);
             let size = |i: usize| (mass[(i, i)], changes[i * n + i]);
             let each = left_out.iter().all(|&i| size(i).0 > 0.0);
             let sizes: Vec<(f64, f64)> = left_out.iter().map(|&i| if each { size(i) } else { (1.0, 0.0) }).collect();

@@ -2,10 +2,10 @@
 
 use dla::{Mechanics, Schedule, State, drive};
 use harness::Method;
-use lagrangian::{Reduced, System};
+use lagrangian::{Reduced, Scalar, System};
 use std::sync::Arc;
 use test_systems::{ChaplyginBall, KnifeEdge, Model, RollerRacer, RollingDisk, Snakeboard};
-use text::{TextSystem, Unit, Words};
+use text::{TextFunctions, TextSystem, Unit, Words};
 
 /// Coordinates in metres or angles (a name that ends in `!`), parameters, Lagrangian, constraints.
 fn words(coordinates: &[&str], parameters: &[(&str, f64)], lagrangian: &str, constraints: &[&str]) -> Words {
@@ -200,9 +200,9 @@ fn keeps_its_claims(duration: f64, h: f64, methods: &[(&str, f64)]) {
     let mut words = racer();
     words.constraints[0] = format!("(2 + cos(phi))*({})", words.constraints[0]);
     let system = TextSystem::<4, 2>::new(Arc::new(text::TextModel::new(&words).unwrap()), 0.0, &q).unwrap();
-    assert!(System::near(&system, 0.0, &q, 0).is_some());
+    assert!(System::near(system.functions(), 0.0, &q, 0).is_some());
     let whole = TextSystem::<4, 2>::new(Arc::new(text::TextModel::new(&racer()).unwrap()), 0.0, &q).unwrap();
-    assert!(System::near(&whole, 0.0, &q, 0).is_none());
+    assert!(System::near(whole.functions(), 0.0, &q, 0).is_none());
     let reference = end(&there, "gauss16", (q, v), (0.5 * h, 2 * steps)).0;
     assert!(reference[2].abs() > 6.0, "it turns: {reference:?}");
     let error = |method: &str, step: f64, steps: u64| {
@@ -249,7 +249,7 @@ fn derived_alike<const N: usize, const M: usize>(words: &Words) {
         let q: [f64; N] = std::array::from_fn(|i| if i < n { number(i, 2.0) } else { 0.0 });
         let xi: [f64; N] =
             std::array::from_fn(|i| if i < n - words.constraints.len() { number(i + 7, 1.0) } else { 0.0 });
-        let system = TextSystem::<N, M>::new(Arc::new(text::TextModel::new(words).unwrap()), 0.3, &q).unwrap();
+        let system = TextFunctions::<N, M>::new(Arc::new(text::TextModel::new(words).unwrap()), 0.3, &q).unwrap();
         let formulas = system.reduced().reduced_motion(0.3, &q, &xi).unwrap();
         let derived = lagrangian::reduced_acceleration(&system, 0.3, &q, &xi).unwrap();
         let size = lagrangian::linear::largest(&derived).max(1.0);
@@ -257,4 +257,89 @@ fn derived_alike<const N: usize, const M: usize>(words: &Words) {
             assert!((formulas[i] - derived[i]).abs() < 1e-12 * size, "{formulas:?} {derived:?}");
         }
     }
+}
+
+/// What methods ask is answered by formulas in the system's own size; the same answers follow from its functions by automatic derivatives in
+/// the size of the shape.
+#[test]
+fn answers_by_formulas_are_those_by_derivatives() {
+    let mut scaled = racer();
+    scaled.constraints[0] = format!("(2 + cos(phi))*({})", scaled.constraints[0]);
+    let mut driven = edge();
+    driven.constraints[0].push_str(" - sin(t)/3");
+    driven.lagrangian.push_str(" + x*sin(theta)*cos(t) + x'*cos(x)*y");
+    driven.forces = vec![("theta".to_owned(), "-theta'^3 + sin(x)*y'".to_owned())];
+    answered_alike::<3, 1>(&driven);
+    answered_alike::<4, 2>(&driven);
+    answered_alike::<4, 2>(&scaled);
+    answered_alike::<8, 5>(&scaled);
+    answered_alike::<18, 6>(&board());
+}
+
+fn answered_alike<const N: usize, const M: usize>(words: &Words) {
+    let n = words.coordinates.len();
+    let number = |i: usize| (1.7 * i as f64 + 0.4).sin();
+    let filled = |first: usize, count: usize| -> [f64; N] {
+        std::array::from_fn(|i| if i < count { number(first + i) } else { 0.0 })
+    };
+    let (q, v, xi) = (filled(0, n), filled(7, n), filled(19, n - words.constraints.len()));
+    let impulse: [f64; M] = std::array::from_fn(|k| number(k + 31));
+    let system = TextSystem::<N, M>::new(Arc::new(text::TextModel::new(words).unwrap()), 0.3, &q).unwrap();
+    let (formulas, functions): (_, &dyn Mechanics<N, M>) =
+        (answers(&system, &q, &v, &xi, &impulse), system.functions());
+    for ((name, found), (_, expected)) in formulas.into_iter().zip(answers(functions, &q, &v, &xi, &impulse)) {
+        let size = expected.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        assert_eq!(found.len(), expected.len(), "{name}");
+        for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            assert!((found - expected).abs() < 1e-13 * size, "{name}, place {i}: {found} {expected}");
+        }
+    }
+}
+
+/// All numbers of the answers of a system at a state.
+fn answers<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    q: &[f64; N],
+    v: &[f64; N],
+    xi: &[f64; N],
+    impulse: &[f64; M],
+) -> Vec<(&'static str, Vec<f64>)> {
+    let t = 0.3;
+    let duals = |all: &[lagrangian::Dual<f64, N>]| -> Vec<f64> {
+        all.iter().flat_map(|dual| [&[dual.re][..], &dual.eps].concat()).collect()
+    };
+    let (p, mass) = system.mass_matrix(t, q, v);
+    let (both, (a, b)) = system.momentum_and_rows(t, q, v);
+    let slopes = system.slopes(t, q, v);
+    let second = system.second_slopes(t, q, v);
+    let node = system.at_node(t, q, v, 0.03, 0.07);
+    let (mut w, mut w_q) = ([0.5; N], [[0.25; N]; N]);
+    let constraint = system.constraint_slopes(t, (q, v), impulse, (&mut w, &mut w_q));
+    let motion = system.motion(t, q, v).unwrap();
+    let basis = system.basis(t, q).unwrap();
+    let lanes = |x: &[f64; N]| x.map(lagrangian::Lanes::constant);
+    let flat = |x: &[lagrangian::Lanes]| -> Vec<f64> { x.iter().flat_map(|x| x.0).collect() };
+    let bracket = system.bracket(lagrangian::Lanes::constant(t), &lanes(q), &lanes(xi)).unwrap();
+    let energy = system.energy_slope(lagrangian::Lanes::constant(t), &lanes(q), &lanes(xi)).unwrap();
+    let rates = bracket.rates(&lanes(q), &lanes(v));
+    let force = second.force.map_or(Vec::new(), |[in_q, in_v]| [duals(&in_q), duals(&in_v)].concat());
+    vec![
+        ("energy", vec![system.lagrangian(t, q, v), system.energy(t, q, v)]),
+        ("momentum", [system.momentum(t, q, v), p, both].concat()),
+        ("mass_matrix", mass.as_flattened().to_vec()),
+        ("rows", [a.as_flattened(), &b, system.reaction_rows(t, q, v).as_flattened()].concat()),
+        ("slopes", [&slopes.l_q[..], &slopes.l_v, slopes.force.as_ref().map_or(&[], |force| force)].concat()),
+        ("second_slopes", [&second.l_q[..], &second.l_v].concat()),
+        ("second_slopes", [second.l_qq, second.l_qv, second.l_vv].concat().concat()),
+        ("force", force),
+        ("at_node", [&[node.re][..], &node.e1, &node.e2, node.e12.as_flattened()].concat()),
+        ("residual", [&system.residual(t, q, v)[..], &duals(&system.residual_along(t, q, v, 0.4))].concat()),
+        ("constraint_slopes", [constraint.a.as_flattened(), &constraint.g, constraint.g_q.as_flattened()].concat()),
+        ("constraint_slopes", [&w[..], w_q.as_flattened()].concat()),
+        ("motion", [&motion.acceleration[..], &motion.multiplier].concat()),
+        ("basis", basis.vectors().concat()),
+        ("inverse_reduced_mass", system.inverse_reduced_mass(t, q, v, &basis).unwrap().concat()),
+        ("bracket", flat(&[&rates.0[..], &rates.1, &[bracket.energy()], &bracket.quasi_momenta()].concat())),
+        ("energy_slope", flat(&[energy.h_q, energy.pi].concat())),
+    ]
 }

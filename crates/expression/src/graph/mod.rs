@@ -5,7 +5,6 @@ mod call;
 mod derivative;
 mod expand;
 mod kind;
-mod power;
 mod product;
 mod sum;
 mod text;
@@ -102,9 +101,9 @@ impl Graph {
         if self.full { Err(Error::GraphFull { limit: self.limit }) } else { Ok(()) }
     }
 
-    /// Lowers the limit to at most `limit` terms and factors in all.
-    pub fn narrow(&mut self, limit: usize) {
-        self.limit = self.limit.min(limit);
+    /// Changes the limit to `limit` terms and factors in all.
+    pub fn set_limit(&mut self, limit: usize) {
+        self.limit = limit.min(u32::MAX as usize >> 1);
     }
 
     /// How many expressions there are, with all their parts.

@@ -1,7 +1,6 @@
 //! Expressions as a list of operations.
 
 mod cost;
-mod factors;
 mod operation;
 mod pairs;
 mod plan;

@@ -1,5 +1,4 @@
-use super::factors::SEARCHED;
-use super::plan::{Item, Plan, Step};
+use super::plan::{Item, Plan, SEARCHED, Step};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, HashSet};
 

@@ -7,12 +7,12 @@ use crate::table::tools::{Methods, all_methods, method, methods, refuses};
 use dla::{Mechanism, RunError, Schedule};
 use harness::{METHODS, Method};
 use std::sync::Arc;
-use text::{TextMechanics, TextModel, TextStart, Words, started};
+use text::{TextMechanics, TextModel, TextStart, Words};
 
 /// The system of a text, from this start.
-fn system(words: &Words, start: &Point) -> Box<dyn TextMechanics> {
+fn system(words: &Words, start: &Point) -> TextMechanics {
     let start = TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() };
-    started(&Arc::new(TextModel::new(words).unwrap()), &start).unwrap()
+    TextMechanics::new(&Arc::new(TextModel::new(words).unwrap()), &start).unwrap()
 }
 
 /// A point with the coordinates that fill up a shape, at rest at zero.

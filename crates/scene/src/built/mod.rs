@@ -23,7 +23,7 @@ pub struct BuiltScene {
 
 enum Owned {
     Sleigh(Box<dyn SceneSystem>),
-    Text(Box<dyn TextMechanics>),
+    Text(TextMechanics),
 }
 
 impl BuiltScene {
@@ -31,7 +31,7 @@ impl BuiltScene {
         Self { system: Owned::Sleigh(system), q, v }
     }
 
-    pub(crate) fn of_text(system: Box<dyn TextMechanics>, start: &TextStart) -> Self {
+    pub(crate) fn of_text(system: TextMechanics, start: &TextStart) -> Self {
         let all = system.mechanism().size().n;
         let [q, v] = [&start.q, &start.v].map(|x| text::filled(x.clone(), all));
         Self { system: Owned::Text(system), q, v }
@@ -42,7 +42,7 @@ impl BuiltScene {
     pub fn system(&self) -> Built<'_> {
         match &self.system {
             Owned::Sleigh(system) => Built::Sleigh(&**system),
-            Owned::Text(system) => Built::Text(&**system),
+            Owned::Text(system) => Built::Text(system),
         }
     }
 }
@@ -63,7 +63,7 @@ pub enum Built<'a> {
     /// A sleigh, and what acts on it.
     Sleigh(&'a dyn SceneSystem),
     /// A system of text.
-    Text(&'a dyn TextMechanics),
+    Text(&'a TextMechanics),
 }
 
 /// A number that a state has, by its name.
@@ -213,7 +213,7 @@ impl<'a> Built<'a> {
     pub fn with(&self, start: &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
         match self {
             Self::Sleigh(system) => sleigh::with(*system, start, k, value),
-            Self::Text(system) => text::with(*system, start, k, value),
+            Self::Text(system) => text::with(system, start, k, value),
         }
     }
 

@@ -64,7 +64,7 @@ fn between<T>(mut state: Vec<T>, first: usize, time: T, told: impl Fn() -> [T; 3
 
 /// The start with quantity `k` set to `value`. A changed coordinate keeps the quasi-velocities; a changed rate moves the other rates as
 /// little as the constraints admit. Returns `None` if the constraints do not admit the value.
-pub(super) fn with(system: &dyn TextMechanics, (q, v): &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
+pub(super) fn with(system: &TextMechanics, (q, v): &StartPlace, k: usize, value: f64) -> Option<StartPlace> {
     let (model, mechanism) = (system.model(), system.mechanism());
     let Size { n: all, .. } = mechanism.size();
     let n = model.coordinates().len();

@@ -239,7 +239,7 @@ impl TextScene {
     /// # Errors
     /// [`BuildError::NoRoom`] of a scene that was not read from a text: sizes were checked there.
     pub fn built(&self) -> Result<BuiltScene, BuildError> {
-        self.begun(::text::started(&self.model, &self.start))
+        self.begun(TextMechanics::new(&self.model, &self.start))
     }
 
     /// The scene's system as the member of a [`Family`] in some of its parameters.
@@ -247,10 +247,10 @@ impl TextScene {
     /// # Errors
     /// As [`built`](Self::built).
     pub fn built_in(&self, family: &Family) -> Result<BuiltScene, BuildError> {
-        self.begun(family.started(&self.start))
+        self.begun(TextMechanics::of_family(family, &self.start))
     }
 
-    fn begun(&self, system: Option<Box<dyn TextMechanics>>) -> Result<BuiltScene, BuildError> {
+    fn begun(&self, system: Option<TextMechanics>) -> Result<BuiltScene, BuildError> {
         Ok(BuiltScene::of_text(system.ok_or(BuildError::NoRoom)?, &self.start))
     }
 }

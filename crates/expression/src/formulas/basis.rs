@@ -1,7 +1,7 @@
 //! A basis of the admissible velocities that holds everywhere, where the constraints allow to see one.
 
-use crate::Formulas;
-use expression::{Expression, Graph, Tape};
+use super::Formulas;
+use crate::{Expression, Graph, Tape};
 
 /// How sums and products are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

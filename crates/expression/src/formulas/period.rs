@@ -1,8 +1,8 @@
 //! Whether formulas have the period of the angles in them.
 
-use crate::tables::Tables;
-use crate::{Entry, Problem, TextError, Unit, Words};
-use expression::{Expression, Turned};
+use super::tables::Tables;
+use super::{Entry, Problem, TextError, Unit, Words};
+use crate::{Expression, Turned};
 
 /// Number of points at which a formula is evaluated if its form does not tell whether it has the period of an angle.
 const PLACES: usize = 48;

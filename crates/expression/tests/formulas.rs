@@ -1,17 +1,7 @@
 //! Reduced equations derived from texts.
 
-#![allow(
-    missing_docs,
-    unreachable_pub,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    clippy::float_cmp,
-    reason = "what clippy.toml allows in tests, their helpers need too"
-)]
-
+use expression::formulas::{Formulas, Parameters, ReducedFormulas, Unit, Words};
 use expression::{Names, Tape};
-use formulas::{Formulas, Parameters, ReducedFormulas, Unit, Words};
 
 /// A system by its coordinates (angles with a star), parameters, Lagrangian and constraints.
 fn formulas(coordinates: &str, parameters: &str, lagrangian: &str, constraints: &[&str]) -> (Formulas, Names) {

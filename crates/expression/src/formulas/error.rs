@@ -76,7 +76,7 @@ impl TextError {
 pub enum Problem {
     /// It is no expression, or uses a name that is not known there.
     #[error(transparent)]
-    Expression(#[from] expression::Error),
+    Expression(#[from] crate::Error),
     /// A function that jumps stands where derivatives are taken.
     #[error("`sign` jumps, and is accepted only in forces, in outputs and in abbreviations for them (column {column})")]
     Sign {

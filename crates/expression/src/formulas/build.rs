@@ -1,6 +1,6 @@
-use crate::tables::{May, Tables};
-use crate::{Entry, Formulas, Parameters, Problem, TextError, Words};
-use expression::Expression;
+use super::tables::{May, Tables};
+use super::{Entry, Formulas, Parameters, Problem, TextError, Words};
+use crate::Expression;
 use std::collections::HashSet;
 
 /// The names of columns that every trajectory has.

@@ -1,8 +1,8 @@
 //! The equations of motion in a basis of the admissible velocities.
 
-use crate::Formulas;
-use crate::basis::{Written, dot, work};
-use expression::{Expression, Graph};
+use super::Formulas;
+use super::basis::{Written, dot, work};
+use crate::{Expression, Graph};
 
 /// The equations of motion in a basis of the admissible velocities, `q' = W xi + v_b` and `xi' = f(t, q, xi)`.
 ///
@@ -52,7 +52,7 @@ impl Formulas {
     pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<ReducedFormulas> {
         /// The terms and factors of a derivation of about a second.
         const MOST: usize = 320_000;
-        self.graph.narrow(MOST);
+        self.graph.set_limit(MOST);
         self.reduced_along(basis, Written::Shorter)
     }
 

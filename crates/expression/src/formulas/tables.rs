@@ -1,5 +1,5 @@
-use crate::{Entry, Problem, TextError};
-use expression::{Expression, Function, Graph, Names, Syntax, parse};
+use super::{Entry, Problem, TextError};
+use crate::{Expression, Function, Graph, Names, Syntax, parse};
 
 /// Names that texts of one kind may use, with their meanings.
 #[derive(Debug, Default)]
@@ -9,7 +9,7 @@ pub(crate) struct TextTable {
 }
 
 impl TextTable {
-    fn add(&mut self, name: &str, meaning: Expression) -> Result<(), expression::Error> {
+    fn add(&mut self, name: &str, meaning: Expression) -> Result<(), crate::Error> {
         self.names.add(name)?;
         self.meanings.push(meaning);
         Ok(())
