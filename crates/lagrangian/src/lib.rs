@@ -15,7 +15,6 @@ mod called;
 mod classify;
 mod compensated;
 mod constraint_slopes;
-mod curvature;
 mod derived;
 mod dual;
 mod effect;
@@ -23,7 +22,6 @@ mod factored;
 mod gradient;
 mod gradients;
 mod growth;
-mod hessians;
 mod hyperdual;
 mod inverse;
 mod lanes;
@@ -67,17 +65,15 @@ pub use classify::{
 };
 pub use compensated::{added, two_sum};
 pub use constraint_slopes::ConstraintSlopes;
-pub use curvature::{add_position_curvature, add_reaction_curvature};
 pub use dual::Dual;
 pub use effect::{Effect, EffectSlope};
 pub use factored::FactoredSaddle;
 pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};
 pub use growth::{Growth, GrowthError, growth};
-pub use hessians::{second_at_node, second_in_both, second_in_place, second_in_velocity};
 pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
-pub use momentum::{energy, mass_matrix, momentum};
+pub use momentum::{energy, gradient_in_velocity, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
 pub use octaves::{octaves, of_octaves};
 pub use parametrised::{Member, Parametrised, Unparametrised};
@@ -98,7 +94,10 @@ pub use saddle::Saddle;
 pub use scalar::{
     Scalar, ScalarFunction, array, assigning_operators, called, from_fn, mapped, mul_add, sin_cos_wrapped,
 };
-pub use second::{AT_ONCE, TwiceDifferentiable, second_derivatives, seed};
+pub use second::{
+    AT_ONCE, TwiceDifferentiable, add_position_curvature, add_reaction_curvature, second_along, second_derivatives,
+    seed,
+};
 pub use seldom::{configuration_slope, velocity_slope};
 pub use shown::Shown;
 pub use slopes::{gradients, on_line, residual_along};

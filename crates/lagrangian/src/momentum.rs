@@ -1,9 +1,16 @@
 use crate::gradient::by_places;
-use crate::{Gradient, Scalar, System, second_in_velocity};
+use crate::{Gradient, Scalar, System, second_along};
 
-/// `L(t, q, v)` with its gradient in `v`.
+/// `L(t, q, v)` with its gradient in `v`, the momenta. Inlined, so that code evaluated beside it shares the sines and other functions of
+/// the configuration; [`momentum`] and [`energy`] call one function.
+#[must_use]
 #[inline(always)]
-fn in_velocity<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> (S, [S; N])
+pub fn gradient_in_velocity<Sys, S, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> (S, [S; N])
 where
     Sys: System<N, M>,
     S: Scalar,
@@ -25,6 +32,16 @@ where
 {
     let l = system.lagrangian(Gradient::<S, W>::fixed(t), &Gradient::all_fixed(q), &Gradient::variables(v));
     (l.re, l.gradient())
+}
+
+#[inline(never)]
+fn in_velocity<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> (S, [S; N]) {
+    gradient_in_velocity(system, t, q, v)
 }
 
 /// The momenta `p = dL/dv`.
@@ -64,6 +81,6 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    let l = second_in_velocity(system, t, q, v);
+    let l = second_along(system, t, (q, v), [S::zero(), S::constant(1.0)], None);
     (l.e1, l.e12)
 }

@@ -1,7 +1,8 @@
 use crate::linear::Singular;
+use crate::second::second_in_velocity;
+use crate::slopes::gradient_in_place;
 use crate::{
-    Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mapped, mass_matrix, reaction_rows,
-    redundant_rows,
+    Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mapped, reaction_rows, redundant_rows,
 };
 use std::ops::Add;
 use thiserror::Error;
@@ -48,7 +49,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
     #[must_use]
     #[inline(always)]
     pub fn equations<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Saddle<N, M> {
-        let (_, mass) = mass_matrix(system, t, q, v);
+        let mass = second_in_velocity(system, t, q, v).e12;
 
         // d/dt L_v at frozen acceleration: the derivative of L_v along (t', q', v') = (1, v, 0).
         let along_t = HyperDual::linear(t, [0.0; N], [1.0]);
@@ -56,7 +57,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
         let in_v = from_fn(|i| HyperDual::linear(v[i], from_fn(|k| if k == i { 1.0 } else { 0.0 }), [0.0]));
         let transport = system.lagrangian(along_t, &along_q, &in_v).e12;
 
-        let l_q = system.lagrangian(Dual::fixed(t), &Dual::variables(q), &mapped(v, Dual::fixed)).eps;
+        let l_q = gradient_in_place(system, t, q, v);
         let force = system.force(t, q, v);
 
         // d/dt (A v + b) at frozen acceleration.

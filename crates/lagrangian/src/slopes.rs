@@ -1,7 +1,7 @@
 use crate::gradient::by_places;
 use crate::second::{AT_ONCE, BLOCK};
 use crate::system::with_nonlinear;
-use crate::{Dual, Gradient, Scalar, System, from_fn};
+use crate::{Dual, Gradient, Scalar, System, from_fn, gradient_in_velocity};
 
 /// The residual of each constraint with its derivatives along `(dq, dv) = (part, 1) e_j`.
 #[must_use]
@@ -74,21 +74,30 @@ pub fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     q: &[S; N],
     v: &[S; N],
 ) -> [[S; N]; 2] {
-    by_places!(gradients_by::<Sys, S, N, M>(system, t, q, v))
+    let (_, l_v) = gradient_in_velocity(system, t, q, v);
+    [gradient_in_place(system, t, q, v), l_v]
 }
 
-/// The gradients by derivatives in `W` places.
+/// `L_q`.
 #[inline(always)]
-fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
+pub(crate) fn gradient_in_place<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,
     t: S,
     q: &[S; N],
     v: &[S; N],
-) -> [[S; N]; 2] {
-    let t = Gradient::<S, W>::fixed(t);
-    let l_v = system.lagrangian(t, &Gradient::all_fixed(q), &Gradient::variables(v));
-    let l_q = system.lagrangian(t, &Gradient::variables(q), &Gradient::all_fixed(v));
-    [l_q.gradient(), l_v.gradient()]
+) -> [S; N] {
+    by_places!(in_place_by::<Sys, S, N, M>(system, t, q, v))
+}
+
+/// `L_q` by derivatives in `W` places.
+#[inline(always)]
+fn in_place_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [S; N] {
+    system.lagrangian(Gradient::<S, W>::fixed(t), &Gradient::variables(q), &Gradient::all_fixed(v)).gradient()
 }
 
 /// Time and configuration at the fraction `alpha` of a step.
