@@ -242,7 +242,15 @@ pub fn inverse_reduced_mass<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     basis: &AdmissibleBasis<f64, N, M>,
 ) -> Result<[[f64; N]; N], Singular> {
-    let (_, mass) = mass_matrix(system, t, q, v);
+    inverse_along(&mass_matrix(system, t, q, v).1, basis)
+}
+
+/// The inverse of `W' mass W`; zero outside of the first `N - M` places.
+#[inline(never)]
+fn inverse_along<const N: usize, const M: usize>(
+    mass: &[[f64; N]; N],
+    basis: &AdmissibleBasis<f64, N, M>,
+) -> Result<[[f64; N]; N], Singular> {
     let dimension = basis.vectors().len();
     // The identity fills the places that are not used.
     let reduced: [[f64; N]; N] = from_fn(|a| {

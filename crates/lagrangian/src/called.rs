@@ -1,10 +1,112 @@
-use crate::{Scalar, ScalarFunction, mapped};
+use crate::{AdmissibleBasis, Constraint, Dual, Gradient, Rounded, Scalar, ScalarFunction, System, from_fn, mapped};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number whose operations are calls, never inlined: for evaluations that are made seldom. A model on such numbers compiles to a tenth of
-/// the code, in a tenth of the time.
+/// A number whose operations are calls, never inlined: for evaluations that are made seldom, and for numbers of many parts. A model on such
+/// numbers compiles to a tenth of the code, in a tenth of the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Called<S>(pub S);
+
+/// The number of questions that are asked seldom: with the derivatives along one direction and along another, and the second derivative.
+pub type SeldomNumber = Called<Gradient<Gradient<f64, 1>, 1>>;
+
+impl SeldomNumber {
+    /// A number that changes at the given rate along the first direction.
+    #[must_use]
+    pub fn moving(re: f64, rate: f64) -> Self {
+        Self(Gradient::moving(Gradient::fixed(re), Gradient::fixed(rate)))
+    }
+
+    /// A number that does not change.
+    #[must_use]
+    pub fn fixed(re: f64) -> Self {
+        Self(Gradient::fixed(Gradient::fixed(re)))
+    }
+
+    /// The point `x`, its coordinate number `j` alone changing at unit rate; no coordinate changes if there is no such number.
+    #[must_use]
+    pub fn along_one<const N: usize>(x: &[f64; N], j: usize) -> [Self; N] {
+        from_fn(|i| if i == j { Self::moving(x[i], 1.0) } else { Self::fixed(x[i]) })
+    }
+
+    /// The value.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        self.0.re.re
+    }
+
+    /// The derivative along the first direction.
+    #[must_use]
+    pub fn rate(self) -> f64 {
+        let [rate] = self.0.gradient();
+        rate.re
+    }
+}
+
+impl<S: Scalar> Called<S> {
+    /// Numbers whose operations are calls.
+    #[must_use]
+    pub fn all<const N: usize>(x: &[S; N]) -> [Self; N] {
+        mapped(x, Self)
+    }
+
+    /// The numbers themselves.
+    #[must_use]
+    pub fn plain<const N: usize>(x: &[Self; N]) -> [S; N] {
+        mapped(x, |Self(x)| x)
+    }
+
+    /// A constraint on the numbers themselves.
+    #[must_use]
+    pub fn plain_constraint<const N: usize, const M: usize>((a, b): Constraint<Self, N, M>) -> Constraint<S, N, M> {
+        (mapped(&a, |row| Self::plain(&row)), Self::plain(&b))
+    }
+
+    /// A basis on the numbers themselves.
+    #[must_use]
+    pub fn plain_basis<const N: usize, const M: usize>(
+        basis: &AdmissibleBasis<Self, N, M>,
+    ) -> AdmissibleBasis<S, N, M> {
+        AdmissibleBasis::from_fn(|k| Self::plain(&basis.vectors()[k]))
+    }
+}
+
+/// A number with a bound on its rounding, and with its derivative along a motion.
+type RoundedAlong = Dual<Rounded, 1>;
+
+/// `L_q(t, q, v)` with bounds on the rounding, and the rates of both along a motion.
+#[inline(never)]
+pub fn configuration_slope<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: RoundedAlong,
+    q: &[RoundedAlong; N],
+    v: &[RoundedAlong; N],
+) -> [RoundedAlong; N] {
+    let in_q = from_fn(|i| Called(Gradient::variable(q[i], i)));
+    rounded_lagrangian(system, t, &in_q, &mapped(v, |v| Called(Gradient::fixed(v))))
+}
+
+/// The momenta `L_v(t, q, v)` with bounds on the rounding, and the rates of both along a motion.
+#[inline(never)]
+pub fn velocity_slope<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: RoundedAlong,
+    q: &[RoundedAlong; N],
+    v: &[RoundedAlong; N],
+) -> [RoundedAlong; N] {
+    let in_v = from_fn(|i| Called(Gradient::variable(v[i], i)));
+    rounded_lagrangian(system, t, &mapped(q, |q| Called(Gradient::fixed(q))), &in_v)
+}
+
+/// The gradient of the Lagrangian in the variables among `q` and `v`, compiled once.
+#[inline(never)]
+fn rounded_lagrangian<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: RoundedAlong,
+    q: &[Called<Gradient<RoundedAlong, N>>; N],
+    v: &[Called<Gradient<RoundedAlong, N>>; N],
+) -> [RoundedAlong; N] {
+    system.lagrangian(Called(Gradient::fixed(t)), q, v).0.gradient()
+}
 
 /// Operations of numbers that are never inlined.
 macro_rules! called {

@@ -1,7 +1,6 @@
 use crate::linear::Lu;
-use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{
-    Constraint, Dependence, Dual, RowSpace, Rows, Scalar, System, from_fn, mapped, mass_matrix, position_rows,
+    Constraint, Dependence, RowSpace, Rows, Scalar, SeldomNumber, System, from_fn, mapped, mass_matrix, position_rows,
     reaction_rows,
 };
 
@@ -115,50 +114,27 @@ pub fn rank_is_constant<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     space: &RowSpace<N, M>,
 ) -> bool {
-    let (fixed_q, fixed_v): ([Dual<f64, 1>; N], _) = (mapped(q, Dual::fixed), mapped(v, Dual::fixed));
-    let in_t = reaction_rows(system, Dual { re: t, eps: [1.0] }, &fixed_q, &fixed_v);
-    stay_within(space, &in_t, 1)
-        && match const { N <= AT_ONCE } {
-            true => rank_is_constant_along::<_, N, M, N>(system, t, (q, v), space, 0),
-            false => (0..N)
-                .step_by(BLOCK)
-                .all(|from| rank_is_constant_along::<_, N, M, BLOCK>(system, t, (q, v), space, from)),
-        }
-}
-
-/// Whether the rank is constant along `P` coordinates, from number `from` on.
-#[inline(never)]
-fn rank_is_constant_along<Sys: System<N, M>, const N: usize, const M: usize, const P: usize>(
-    system: &Sys,
-    t: f64,
-    (q, v): (&[f64; N], &[f64; N]),
-    space: &RowSpace<N, M>,
-    from: usize,
-) -> bool {
-    let in_q: [Dual<f64, P>; N] = from_fn(|i| Dual { re: q[i], eps: seed(1.0, i, from) });
-    let rows = reaction_rows(system, Dual::fixed(t), &in_q, &mapped(v, Dual::fixed));
-    stay_within(space, &rows, P.min(N - from))
-}
-
-/// Whether the vanishing combinations of rows have derivatives within the span, along the first `directions` directions.
-fn stay_within<const N: usize, const M: usize, const P: usize>(
-    space: &RowSpace<N, M>,
-    rows: &[[Dual<f64, P>; N]; M],
-    directions: usize,
-) -> bool {
-    let Dependence { independent, combination, .. } = space.dependence();
-    let derivative = |k: usize, j: usize| -> [f64; N] { from_fn(|i| rows[k][i].eps[j]) };
-    (0..M).filter(|k| !independent.contains(*k)).all(|k| {
-        (0..directions).all(|j| {
-            let mut sum = derivative(k, j);
-            let (_, mut terms) = space.outside(&sum);
-            for l in independent.iter() {
-                let part = mapped(&derivative(l, j), |x| x * combination[k][l]);
-                sum = from_fn(|i| sum[i] - part[i]);
-                terms += space.outside(&part).1;
-            }
-            space.outside(&sum).0 <= RowSpace::<N, M>::ROUNDING * terms
+    let fixed_v = mapped(v, SeldomNumber::fixed);
+    // Along time, and along one coordinate after another.
+    stay_within(space, &reaction_rows(system, SeldomNumber::moving(t, 1.0), &mapped(q, SeldomNumber::fixed), &fixed_v))
+        && (0..N).all(|j| {
+            let in_q = SeldomNumber::along_one(q, j);
+            stay_within(space, &reaction_rows(system, SeldomNumber::fixed(t), &in_q, &fixed_v))
         })
+}
+
+/// Whether the vanishing combinations of rows have rates within the span.
+fn stay_within<const N: usize, const M: usize>(space: &RowSpace<N, M>, rows: &[[SeldomNumber; N]; M]) -> bool {
+    let Dependence { independent, combination, .. } = space.dependence();
+    (0..M).filter(|k| !independent.contains(*k)).all(|k| {
+        let mut sum = mapped(&rows[k], SeldomNumber::rate);
+        let (_, mut terms) = space.outside(&sum);
+        for l in independent.iter() {
+            let part = mapped(&rows[l], |a| a.rate() * combination[k][l]);
+            sum = from_fn(|i| sum[i] - part[i]);
+            terms += space.outside(&part).1;
+        }
+        space.outside(&sum).0 <= RowSpace::<N, M>::ROUNDING * terms
     })
 }
 
@@ -199,7 +175,7 @@ fn kinds<Sys: System<N, M>, const N: usize, const M: usize>(
     let g = system.holonomic(t, q).unwrap_or([None; M]);
     let phi = system.nonlinear(t, q, v).unwrap_or([None; M]);
     let RowsInPlace { b, b_q, .. } = RowsInPlace::at(system, t, q);
-    let (_, later) = system.constraint(Dual { re: t, eps: [1.0] }, &mapped(q, Dual::fixed));
+    let (_, later) = system.constraint(SeldomNumber::moving(t, 1.0), &mapped(q, SeldomNumber::fixed));
     from_fn(|k| match (phi[k], g[k]) {
         (Some(_), _) => RowKind::Nonlinear,
         (None, Some(_)) => RowKind::Position,
@@ -232,32 +208,18 @@ struct RowsInPlace<const N: usize, const M: usize> {
 
 impl<const N: usize, const M: usize> RowsInPlace<N, M> {
     fn at<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N]) -> Self {
-        let mut all = Self { a: [[0.0; N]; M], b: [0.0; M], a_q: vec![[[0.0; N]; N]; M], b_q: [[0.0; N]; M] };
-        match const { N <= AT_ONCE } {
-            true => all.add::<Sys, N>(system, t, q, 0),
-            false => (0..N).step_by(BLOCK).for_each(|from| all.add::<Sys, BLOCK>(system, t, q, from)),
-        }
-        all
-    }
-
-    /// With the derivatives in `P` coordinates, from number `from` on.
-    #[inline(never)]
-    fn add<Sys: System<N, M>, const P: usize>(&mut self, system: &Sys, t: f64, q: &[f64; N], from: usize) {
-        let in_q: [Dual<f64, P>; N] = from_fn(|i| Dual { re: q[i], eps: seed(1.0, i, from) });
-        let (rows, b) = system.constraint(Dual::fixed(t), &in_q);
-        for k in 0..M {
-            self.b[k] = b[k].re;
-            for (j, e) in (from..N).zip(b[k].eps) {
-                self.b_q[k][j] = e;
-            }
-            for i in 0..N {
-                let a: Dual<f64, P> = rows[k][i];
-                self.a[k][i] = a.re;
-                for (j, e) in (from..N).zip(a.eps) {
-                    self.a_q[k][i][j] = e;
+        let (a, b) = system.constraint(t, q);
+        let mut all = Self { a, b, a_q: vec![[[0.0; N]; N]; M], b_q: [[0.0; N]; M] };
+        for j in 0..N {
+            let (a, b) = system.constraint(SeldomNumber::fixed(t), &SeldomNumber::along_one(q, j));
+            for k in 0..M {
+                all.b_q[k][j] = b[k].rate();
+                for i in 0..N {
+                    all.a_q[k][i][j] = a[k][i].rate();
                 }
             }
         }
+        all
     }
 }
 
@@ -270,7 +232,7 @@ fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
     space: &RowSpace<N, M>,
 ) -> usize {
     let RowsInPlace { a, b, a_q: in_q, b_q } = RowsInPlace::at(system, t, q);
-    let (in_t, _) = system.constraint(Dual { re: t, eps: [1.0] }, &mapped(q, Dual::fixed));
+    let (in_t, _) = system.constraint(SeldomNumber::moving(t, 1.0), &mapped(q, SeldomNumber::fixed));
     let here: Constraint<f64, N, M> = (a, b);
     let rows: Vec<usize> = space.dependence().independent.iter().filter(|k| kinds[*k] != RowKind::Nonlinear).collect();
     let drift = particular(&here, &rows);
@@ -294,7 +256,7 @@ fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
                         add(in_q[k][j][i] * x[i] * y[j]);
                         add(-in_q[k][i][j] * x[i] * y[j]);
                     }
-                    add(time * in_t[k][i].eps[0] * y[i]);
+                    add(time * in_t[k][i].rate() * y[i]);
                     add(-time * b_q[k][i] * y[i]);
                 }
                 form.push(if f64::abs(sum) <= RowSpace::<N, M>::ROUNDING * terms { 0.0 } else { sum });

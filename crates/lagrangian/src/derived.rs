@@ -19,8 +19,20 @@ pub(crate) trait Derived: Scalar {
     fn value(self) -> Self::Base;
     /// The same derivatives with another value.
     fn at(self, value: Self::Base) -> Self;
+    /// Another value, and every derivative by a function of it that is linear.
+    fn linear_in(self, value: Self::Base, by: impl Fn(Self::Base) -> Self::Base) -> Self;
+    /// A function of this number with the value `f`, the derivative `df` and the second derivative `ddf`, which only numbers with second
+    /// derivatives call.
+    fn function(self, f: Self::Base, df: Self::Base, ddf: impl FnOnce() -> Self::Base) -> Self;
     /// Value and derivatives times a factor that has none.
-    fn times(self, factor: Self::Base) -> Self;
+    #[inline(always)]
+    fn times(self, factor: Self::Base) -> Self {
+        self.linear_in(
+            self.value() * factor,
+            #[inline(always)]
+            |e| e * factor,
+        )
+    }
 }
 
 /// The length of a vector. All derivatives of a zero vector's length are zero.
@@ -66,9 +78,97 @@ pub(crate) fn derived_angle<D: Derived>(y: D, x: D) -> D {
     D::lifted(r).where_positive((across / along).at(angle), D::lifted(angle))
 }
 
-/// The functions of a number with derivatives that are not of one number alone.
+/// The functions of a number with derivatives, for its implementation of `Scalar`.
 macro_rules! derived_functions {
     () => {
+        #[inline(always)]
+        fn constant(x: f64) -> Self {
+            Self::lifted(Scalar::constant(x))
+        }
+        #[inline(always)]
+        fn sin_cos(self) -> (Self, Self) {
+            let (sin, cos) = self.re.sin_cos();
+            (
+                self.function(
+                    sin,
+                    cos,
+                    #[inline(always)]
+                    || -sin,
+                ),
+                self.function(
+                    cos,
+                    -sin,
+                    #[inline(always)]
+                    || -cos,
+                ),
+            )
+        }
+        #[inline(always)]
+        fn exp(self) -> Self {
+            let f = self.re.exp();
+            self.function(
+                f,
+                f,
+                #[inline(always)]
+                || f,
+            )
+        }
+        #[inline(always)]
+        fn ln(self) -> Self {
+            let df = self.re.recip();
+            self.function(
+                self.re.ln(),
+                df,
+                #[inline(always)]
+                || -(df * df),
+            )
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            let f = self.re.sqrt();
+            let df = f.recip() * 0.5;
+            self.function(
+                f,
+                df,
+                #[inline(always)]
+                || -(df / self.re * 0.5),
+            )
+        }
+        #[inline(always)]
+        fn powi(self, n: i32) -> Self {
+            match n {
+                0 => Self::constant(1.0),
+                1 => self,
+                _ => self.function(
+                    self.re.powi(n),
+                    self.re.powi(n - 1) * f64::from(n),
+                    #[inline(always)]
+                    || self.re.powi(n - 2) * (f64::from(n) * f64::from(n - 1)),
+                ),
+            }
+        }
+        #[inline(always)]
+        fn recip(self) -> Self {
+            let f = self.re.recip();
+            let df = -(f * f);
+            self.function(
+                f,
+                df,
+                #[inline(always)]
+                || -(df * f) * 2.0,
+            )
+        }
+        #[inline(always)]
+        fn apply<F: ScalarFunction>(self, function: F) -> Self {
+            let f = self.re.apply(function);
+            let slope = function.slope(self.re, f);
+            self.function(
+                f,
+                slope,
+                #[inline(always)]
+                || function.curvature(self.re, f, slope),
+            )
+        }
         #[inline(always)]
         fn length<const K: usize>(components: &[Self; K]) -> Self {
             crate::derived::derived_length(components)
@@ -77,6 +177,40 @@ macro_rules! derived_functions {
         fn atan2(self, x: Self) -> Self {
             crate::derived::derived_angle(self, x)
         }
+    };
+}
+/// The operators of a number with derivatives that are linear in them.
+macro_rules! linear_operators {
+    ([$($generics:tt)*] $number:ty) => {
+        impl<$($generics)*> std::ops::Neg for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                self.linear_in(-self.re, #[inline(always)] |e| -e)
+            }
+        }
+        impl<$($generics)*> std::ops::Add<f64> for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, o: f64) -> Self {
+                self.at(self.re + o)
+            }
+        }
+        impl<$($generics)*> std::ops::Mul<f64> for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, o: f64) -> Self {
+                self.linear_in(self.re * o, #[inline(always)] |e| e * o)
+            }
+        }
+        impl<$($generics)*> std::ops::Div<f64> for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, o: f64) -> Self {
+                self.linear_in(self.re / o, #[inline(always)] |e| e / o)
+            }
+        }
+        crate::derived::derived_operators!([$($generics)*] $number);
     };
 }
 /// Operators that follow from addition, negation and multiplication, for the number types of this crate.
@@ -100,4 +234,4 @@ macro_rules! derived_operators {
     };
 }
 
-pub(crate) use {derived_functions, derived_operators};
+pub(crate) use {derived_functions, derived_operators, linear_operators};

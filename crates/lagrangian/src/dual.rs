@@ -1,7 +1,7 @@
-use crate::derived::{Derived, derived_functions, derived_operators};
+use crate::derived::{Derived, derived_functions, linear_operators};
 use crate::{Scalar, ScalarFunction, from_fn};
 use scalar::mapped;
-use std::ops::{Add, Div, Mul, Neg};
+use std::ops::{Add, Div, Mul};
 
 /// A first-order dual number with `N` independent infinitesimals: a value and its gradient.
 ///
@@ -67,77 +67,9 @@ impl<S: Scalar, const N: usize> Div for Dual<S, N> {
         Self { re, eps: from_fn(|i| (self.eps[i] - re * o.eps[i]) / o.re) }
     }
 }
-impl<S: Scalar, const N: usize> Neg for Dual<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { re: -self.re, eps: mapped(&self.eps, |e| -e) }
-    }
-}
-impl<S: Scalar, const N: usize> Add<f64> for Dual<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: f64) -> Self {
-        Self { re: self.re + o, ..self }
-    }
-}
-impl<S: Scalar, const N: usize> Mul<f64> for Dual<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: f64) -> Self {
-        Self { re: self.re * o, eps: mapped(&self.eps, |e| e * o) }
-    }
-}
-impl<S: Scalar, const N: usize> Div<f64> for Dual<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, o: f64) -> Self {
-        Self { re: self.re / o, eps: mapped(&self.eps, |e| e / o) }
-    }
-}
-derived_operators!([S: Scalar, const N: usize] Dual<S, N>);
+linear_operators!([S: Scalar, const N: usize] Dual<S, N>);
 
 impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
-    #[inline(always)]
-    fn constant(x: f64) -> Self {
-        Self::fixed(S::constant(x))
-    }
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.re.sin_cos();
-        (self.chain(sin, cos), self.chain(cos, -sin))
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let f = self.re.exp();
-        self.chain(f, f)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(self.re.ln(), self.re.recip())
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let f = self.re.sqrt();
-        self.chain(f, f.recip() * 0.5)
-    }
-    #[inline(always)]
-    fn powi(self, n: i32) -> Self {
-        if n == 0 {
-            return Self::constant(1.0);
-        }
-        self.chain(self.re.powi(n), self.re.powi(n - 1) * f64::from(n))
-    }
-    #[inline(always)]
-    fn recip(self) -> Self {
-        let f = self.re.recip();
-        self.chain(f, -(f * f))
-    }
-    #[inline(always)]
-    fn apply<F: ScalarFunction>(self, function: F) -> Self {
-        let f = self.re.apply(function);
-        self.chain(f, function.slope(self.re, f))
-    }
     #[inline(always)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         let chosen = |a: S, b: S| self.re.where_positive(a, b);
@@ -166,7 +98,11 @@ impl<S: Scalar, const N: usize> Derived for Dual<S, N> {
         Self { re, ..self }
     }
     #[inline(always)]
-    fn times(self, factor: S) -> Self {
-        self.chain(self.re * factor, factor)
+    fn linear_in(self, re: S, by: impl Fn(S) -> S) -> Self {
+        Self { re, eps: mapped(&self.eps, by) }
+    }
+    #[inline(always)]
+    fn function(self, f: S, df: S, _ddf: impl FnOnce() -> S) -> Self {
+        self.chain(f, df)
     }
 }

@@ -1,6 +1,6 @@
-use crate::derived::{Derived, derived_functions, derived_operators};
+use crate::derived::{Derived, derived_functions, linear_operators};
 use crate::{Scalar, ScalarFunction, array};
-use std::ops::{Add, Div, Mul, Neg};
+use std::ops::{Add, Div, Mul};
 
 /// A number with its gradient in `N` variables, or a number that depends on none of them; which of the two is known when a model is
 /// compiled, after inlining.
@@ -14,6 +14,14 @@ pub struct Gradient<S, const N: usize> {
     pub re: S,
     /// The derivatives; none of a number that does not depend on the variables.
     parts: Option<[S; N]>,
+}
+
+impl<S: Scalar> Gradient<S, 1> {
+    /// A number that changes at the given rate along the one direction.
+    #[must_use]
+    pub fn moving(re: S, rate: S) -> Self {
+        Self { re, parts: Some([rate]) }
+    }
 }
 
 /// Calls a function of systems of `N` coordinates whose last parameter is the length of gradients: of five to eight coordinates it is
@@ -90,30 +98,6 @@ impl<S: Scalar, const N: usize> Gradient<S, N> {
     }
 
     #[inline(always)]
-    fn chain(self, f: S, df: S) -> Self {
-        self.scaled(
-            f,
-            #[inline(always)]
-            |e| df * e,
-        )
-    }
-
-    #[inline(always)]
-    fn scaled(self, re: S, by: impl Fn(S) -> S) -> Self {
-        let parts = self.parts.map(
-            #[inline(always)]
-            |e| {
-                array(
-                    S::zero(),
-                    #[inline(always)]
-                    |i| by(e[i]),
-                )
-            },
-        );
-        Self { re, parts }
-    }
-
-    #[inline(always)]
     fn with(self, o: Self, re: S, one: impl Fn(S) -> S, other: impl Fn(S) -> S) -> Self {
         let parts = match (self.parts, o.parts) {
             (None, None) => None,
@@ -180,89 +164,9 @@ impl<S: Scalar, const N: usize> Div for Gradient<S, N> {
         )
     }
 }
-impl<S: Scalar, const N: usize> Neg for Gradient<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.scaled(
-            -self.re,
-            #[inline(always)]
-            |e| -e,
-        )
-    }
-}
-impl<S: Scalar, const N: usize> Add<f64> for Gradient<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: f64) -> Self {
-        Self { re: self.re + o, ..self }
-    }
-}
-impl<S: Scalar, const N: usize> Mul<f64> for Gradient<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: f64) -> Self {
-        self.scaled(
-            self.re * o,
-            #[inline(always)]
-            |e| e * o,
-        )
-    }
-}
-impl<S: Scalar, const N: usize> Div<f64> for Gradient<S, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, o: f64) -> Self {
-        self.scaled(
-            self.re / o,
-            #[inline(always)]
-            |e| e / o,
-        )
-    }
-}
-derived_operators!([S: Scalar, const N: usize] Gradient<S, N>);
+linear_operators!([S: Scalar, const N: usize] Gradient<S, N>);
 
 impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
-    #[inline(always)]
-    fn constant(x: f64) -> Self {
-        Self::fixed(S::constant(x))
-    }
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.re.sin_cos();
-        (self.chain(sin, cos), self.chain(cos, -sin))
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let f = self.re.exp();
-        self.chain(f, f)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(self.re.ln(), self.re.recip())
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let f = self.re.sqrt();
-        self.chain(f, f.recip() * 0.5)
-    }
-    #[inline(always)]
-    fn powi(self, n: i32) -> Self {
-        if n == 0 {
-            return Self::constant(1.0);
-        }
-        self.chain(self.re.powi(n), self.re.powi(n - 1) * f64::from(n))
-    }
-    #[inline(always)]
-    fn recip(self) -> Self {
-        let f = self.re.recip();
-        self.chain(f, -(f * f))
-    }
-    #[inline(always)]
-    fn apply<F: ScalarFunction>(self, function: F) -> Self {
-        let f = self.re.apply(function);
-        self.chain(f, function.slope(self.re, f))
-    }
     #[inline(always)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         then.with(
@@ -312,7 +216,25 @@ impl<S: Scalar, const N: usize> Derived for Gradient<S, N> {
         Self { re, ..self }
     }
     #[inline(always)]
-    fn times(self, factor: S) -> Self {
-        self.chain(self.re * factor, factor)
+    fn linear_in(self, re: S, by: impl Fn(S) -> S) -> Self {
+        let parts = self.parts.map(
+            #[inline(always)]
+            |e| {
+                array(
+                    S::zero(),
+                    #[inline(always)]
+                    |i| by(e[i]),
+                )
+            },
+        );
+        Self { re, parts }
+    }
+    #[inline(always)]
+    fn function(self, f: S, df: S, _ddf: impl FnOnce() -> S) -> Self {
+        self.linear_in(
+            f,
+            #[inline(always)]
+            |e| df * e,
+        )
     }
 }

@@ -1,5 +1,5 @@
 use crate::reduced::shortest;
-use crate::{AdmissibleBasis, Constraint, Dual, HyperDual, Parametrised, Scalar, from_fn, mapped};
+use crate::{AdmissibleBasis, Called, Constraint, Dual, HyperDual, Parametrised, Scalar, from_fn, mapped, seed};
 
 /// A number with its derivatives in eight directions.
 pub type Seeded = Dual<f64, 8>;
@@ -152,65 +152,84 @@ pub struct SeededMember<F, const P: usize> {
     pub parameters: [Seeded; P],
 }
 
+/// All numbers are [`Called`]: of numbers with so many parts a call costs little, and a system is compiled small.
 impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> Gradients<N, M> for SeededMember<F, P> {
     fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded {
-        self.first_order(t, &mapped(q, Dual::fixed), &mapped(v, Dual::fixed)).re
+        self.lagrangian_along(fixed(t), &mapped(q, fixed), &mapped(v, fixed)).re
     }
 
     fn momentum(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &mapped(q, Dual::fixed), &Dual::variables(v)).eps
+        self.lagrangian_along(fixed(t), &mapped(q, fixed), &variables(v, &[Seeded::zero(); N])).e1
     }
 
     fn momentum_rate(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N], a: &[Seeded; N]) -> [Seeded; N] {
-        let (zero, one) = (Seeded::zero(), Seeded::constant(1.0));
-        let along_t = HyperDual::linear(t, [zero; N], [one]);
-        let along_q: [HyperDual<Seeded, N, 1>; N] = from_fn(|i| HyperDual::linear(q[i], [zero; N], [v[i]]));
-        let in_v =
-            from_fn(|i| HyperDual::linear(v[i], from_fn(|k| Seeded::constant(f64::from(u8::from(k == i)))), [a[i]]));
-        let p = mapped(&self.parameters, HyperDual::fixed);
-        mapped(&self.family.lagrangian(&p, along_t, &along_q, &in_v).e12, |[rate]| rate)
+        let along = |x: Seeded, rate: Seeded| Called(HyperDual::linear(x, [Seeded::zero(); N], [rate]));
+        let along_q = from_fn(|i| along(q[i], v[i]));
+        let l = self.lagrangian_along(along(t, Seeded::constant(1.0)), &along_q, &variables(v, a));
+        mapped(&l.e12, |[rate]| rate)
     }
 
     fn slope(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &Dual::variables(q), &mapped(v, Dual::fixed)).eps
+        self.lagrangian_along(fixed(t), &variables(q, &[Seeded::zero(); N]), &mapped(v, fixed)).e1
     }
 
     fn force(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Seeded; N]> {
-        self.family.force(&self.parameters, t, q, v)
+        let force = self.family.force(&Called::all(&self.parameters), Called(t), &Called::all(q), &Called::all(v))?;
+        Some(Called::plain(&force))
     }
 
     fn constraint_along(&self, t: Along, q: &[Along; N]) -> Constraint<Along, N, M> {
-        self.family.constraint(&mapped(&self.parameters, Dual::fixed), t, q)
+        Called::plain_constraint(self.family.constraint(&self.fixed_parameters(), Called(t), &Called::all(q)))
     }
 
     fn basis_along(&self, t: Along, q: &[Along; N]) -> Option<AdmissibleBasis<Along, N, M>> {
-        self.family.admissible_basis(&mapped(&self.parameters, Dual::fixed), t, q)
+        let basis = self.family.admissible_basis(&self.fixed_parameters(), Called(t), &Called::all(q))?;
+        Some(Called::plain_basis(&basis))
     }
 
     fn holonomic(&self, t: Seeded, q: &[Seeded; N]) -> Option<[Option<Seeded>; M]> {
-        self.family.holonomic(&self.parameters, t, q)
+        let g = self.family.holonomic(&Called::all(&self.parameters), Called(t), &Called::all(q))?;
+        Some(g.map(|g| g.map(|Called(g)| g)))
     }
 
     fn nonlinear(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Option<Dual<Seeded, N>>; M]> {
-        let (t, q) = (Dual::fixed(t), mapped(q, Dual::fixed));
-        self.family.nonlinear(&mapped(&self.parameters, Dual::fixed), t, &q, &Dual::variables(v))
+        let (t, q) = (Called(Dual::fixed(t)), mapped(q, |q| Called(Dual::fixed(q))));
+        let phi = self.family.nonlinear(&self.fixed_parameters(), t, &q, &Called::all(&Dual::variables(v)))?;
+        Some(phi.map(|phi| phi.map(|Called(phi)| phi)))
     }
 }
 
+/// A number of the Lagrangian, with its derivatives in `N` variables, along a motion, and in both.
+type SeededAlong<const N: usize> = Called<HyperDual<Seeded, N, 1>>;
+
+fn fixed<const N: usize>(x: Seeded) -> SeededAlong<N> {
+    Called(HyperDual::fixed(x))
+}
+
+/// The variables, which change along a motion at the given rates.
+fn variables<const N: usize>(x: &[Seeded; N], rate: &[Seeded; N]) -> [SeededAlong<N>; N] {
+    from_fn(|i| Called(HyperDual::linear(x[i], seed(Seeded::constant(1.0), i, 0), [rate[i]])))
+}
+
 impl<F, const P: usize> SeededMember<F, P> {
-    /// The Lagrangian with its gradient in the variables among `q` and `v`.
+    /// The parameters, which no variable changes.
+    fn fixed_parameters<const K: usize>(&self) -> [Called<Dual<Seeded, K>>; P] {
+        mapped(&self.parameters, |p| Called(Dual::fixed(p)))
+    }
+
+    /// The Lagrangian with its derivatives in the variables among `q` and `v`.
     ///
-    /// Not inlined, so that the Lagrangian is compiled once for both of its gradients.
+    /// Not inlined, so that the Lagrangian is compiled once for all of its derivatives.
     #[inline(never)]
-    fn first_order<const N: usize, const M: usize>(
+    fn lagrangian_along<const N: usize, const M: usize>(
         &self,
-        t: Seeded,
-        q: &[Dual<Seeded, N>; N],
-        v: &[Dual<Seeded, N>; N],
-    ) -> Dual<Seeded, N>
+        t: SeededAlong<N>,
+        q: &[SeededAlong<N>; N],
+        v: &[SeededAlong<N>; N],
+    ) -> HyperDual<Seeded, N, 1>
     where
         F: Parametrised<N, M, P>,
     {
-        self.family.lagrangian(&mapped(&self.parameters, Dual::fixed), Dual::fixed(t), q, v)
+        self.family.lagrangian(&mapped(&self.parameters, fixed), t, q, v).0
     }
 }

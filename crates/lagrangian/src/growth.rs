@@ -1,4 +1,4 @@
-use crate::{Dual, RowSpace, Scalar, System, from_fn, mapped};
+use crate::{Called, Dual, RowSpace, Scalar, System, from_fn, mapped};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -18,9 +18,9 @@ struct LieBracket<X, Y>(X, Y);
 
 impl<X: VectorField<N>, Y: VectorField<N>, const N: usize> VectorField<N> for LieBracket<X, Y> {
     fn at<S: Scalar>(&self, q: &[S; N]) -> [S; N] {
-        let along = |v: [S; N]| -> [Dual<S, 1>; N] { from_fn(|i| Dual { re: q[i], eps: [v[i]] }) };
+        let along = |v: [S; N]| -> [_; N] { from_fn(|i| Called(Dual { re: q[i], eps: [v[i]] })) };
         let (of_y, of_x) = (self.1.at(&along(self.0.at(q))), self.0.at(&along(self.1.at(q))));
-        from_fn(|i| of_y[i].eps[0] - of_x[i].eps[0])
+        from_fn(|i| of_y[i].0.eps[0] - of_x[i].0.eps[0])
     }
 }
 

@@ -1,7 +1,7 @@
-use crate::derived::{Derived, derived_functions, derived_operators};
+use crate::derived::{Derived, derived_functions, linear_operators};
 use crate::{Scalar, ScalarFunction, from_fn};
 use scalar::mapped;
-use std::ops::{Add, Div, Mul, Neg};
+use std::ops::{Add, Div, Mul};
 
 /// A second-order dual number with two groups of infinitesimals, `P` of the first and `Q` of the second.
 ///
@@ -89,100 +89,9 @@ impl<S: Scalar, const P: usize, const Q: usize> Div for HyperDual<S, P, Q> {
         Self { re, e1, e2, e12 }
     }
 }
-impl<S: Scalar, const P: usize, const Q: usize> Neg for HyperDual<S, P, Q> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self {
-            re: -self.re,
-            e1: mapped(&self.e1, |e| -e),
-            e2: mapped(&self.e2, |e| -e),
-            e12: mapped(&self.e12, |row| mapped(&row, |e| -e)),
-        }
-    }
-}
-impl<S: Scalar, const P: usize, const Q: usize> Add<f64> for HyperDual<S, P, Q> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: f64) -> Self {
-        Self { re: self.re + o, ..self }
-    }
-}
-impl<S: Scalar, const P: usize, const Q: usize> Mul<f64> for HyperDual<S, P, Q> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: f64) -> Self {
-        Self {
-            re: self.re * o,
-            e1: mapped(&self.e1, |e| e * o),
-            e2: mapped(&self.e2, |e| e * o),
-            e12: mapped(&self.e12, |row| mapped(&row, |e| e * o)),
-        }
-    }
-}
-impl<S: Scalar, const P: usize, const Q: usize> Div<f64> for HyperDual<S, P, Q> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, o: f64) -> Self {
-        Self {
-            re: self.re / o,
-            e1: mapped(&self.e1, |e| e / o),
-            e2: mapped(&self.e2, |e| e / o),
-            e12: mapped(&self.e12, |row| mapped(&row, |e| e / o)),
-        }
-    }
-}
-derived_operators!([S: Scalar, const P: usize, const Q: usize] HyperDual<S, P, Q>);
+linear_operators!([S: Scalar, const P: usize, const Q: usize] HyperDual<S, P, Q>);
 
 impl<S: Scalar, const P: usize, const Q: usize> Scalar for HyperDual<S, P, Q> {
-    #[inline(always)]
-    fn constant(x: f64) -> Self {
-        Self::fixed(S::constant(x))
-    }
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.re.sin_cos();
-        (self.chain(sin, cos, -sin), self.chain(cos, -sin, -cos))
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let f = self.re.exp();
-        self.chain(f, f, f)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        let df = self.re.recip();
-        self.chain(self.re.ln(), df, -(df * df))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let f = self.re.sqrt();
-        let df = f.recip() * 0.5;
-        self.chain(f, df, -(df / self.re * 0.5))
-    }
-    #[inline(always)]
-    fn powi(self, n: i32) -> Self {
-        match n {
-            0 => Self::constant(1.0),
-            1 => self,
-            _ => {
-                let ddf = self.re.powi(n - 2) * (f64::from(n) * f64::from(n - 1));
-                self.chain(self.re.powi(n), self.re.powi(n - 1) * f64::from(n), ddf)
-            }
-        }
-    }
-    #[inline(always)]
-    fn recip(self) -> Self {
-        let f = self.re.recip();
-        let df = -(f * f);
-        self.chain(f, df, -(df * f) * 2.0)
-    }
-    #[inline(always)]
-    fn apply<F: ScalarFunction>(self, function: F) -> Self {
-        let f = self.re.apply(function);
-        let slope = function.slope(self.re, f);
-        self.chain(f, slope, function.curvature(self.re, f, slope))
-    }
     #[inline(always)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         let chosen = |a: S, b: S| self.re.where_positive(a, b);
@@ -217,12 +126,16 @@ impl<S: Scalar, const P: usize, const Q: usize> Derived for HyperDual<S, P, Q> {
         Self { re, ..self }
     }
     #[inline(always)]
-    fn times(self, factor: S) -> Self {
+    fn linear_in(self, re: S, by: impl Fn(S) -> S) -> Self {
         Self {
-            re: self.re * factor,
-            e1: mapped(&self.e1, |e| e * factor),
-            e2: mapped(&self.e2, |e| e * factor),
-            e12: mapped(&self.e12, |row| mapped(&row, |e| e * factor)),
+            re,
+            e1: mapped(&self.e1, &by),
+            e2: mapped(&self.e2, &by),
+            e12: mapped(&self.e12, |row| mapped(&row, &by)),
         }
+    }
+    #[inline(always)]
+    fn function(self, f: S, df: S, ddf: impl FnOnce() -> S) -> Self {
+        self.chain(f, df, ddf())
     }
 }

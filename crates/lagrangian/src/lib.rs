@@ -8,7 +8,6 @@
 
 mod along;
 mod basis;
-mod bordered;
 mod bracket;
 mod by_hand;
 mod called;
@@ -18,12 +17,10 @@ mod constraint_slopes;
 mod derived;
 mod dual;
 mod effect;
-mod factored;
 mod gradient;
 mod gradients;
 mod growth;
 mod hyperdual;
-mod inverse;
 mod lanes;
 pub mod linear;
 mod momentum;
@@ -43,7 +40,6 @@ mod rows;
 mod rule;
 mod saddle;
 mod second;
-mod seldom;
 mod shown;
 pub mod simd;
 mod slopes;
@@ -56,10 +52,9 @@ mod with_basis;
 
 pub use along::acceleration_along;
 pub use basis::{AdmissibleBasis, linear_basis};
-pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use by_hand::{Reduced, StageEvaluation};
-pub use called::Called;
+pub use called::{Called, SeldomNumber, configuration_slope, velocity_slope};
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
 };
@@ -67,12 +62,12 @@ pub use compensated::{added, two_sum};
 pub use constraint_slopes::ConstraintSlopes;
 pub use dual::Dual;
 pub use effect::{Effect, EffectSlope};
-pub use factored::FactoredSaddle;
 pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};
 pub use growth::{Growth, GrowthError, growth};
 pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
+pub use linear::clear_multipliers;
 pub use momentum::{energy, gradient_in_velocity, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
 pub use octaves::{octaves, of_octaves};
@@ -90,7 +85,7 @@ pub use rounding::{MotionRounding, bracket_rounding, reduced_rounding};
 pub use row_space::{Dependence, RowSpace};
 pub use rows::Rows;
 pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Trapezoid};
-pub use saddle::Saddle;
+pub use saddle::{Bordered, FactoredSaddle, Saddle};
 pub use scalar::{
     Scalar, ScalarFunction, array, assigning_operators, called, from_fn, mapped, mul_add, sin_cos_wrapped,
 };
@@ -98,7 +93,6 @@ pub use second::{
     AT_ONCE, TwiceDifferentiable, add_position_curvature, add_reaction_curvature, second_along, second_derivatives,
     seed,
 };
-pub use seldom::{configuration_slope, velocity_slope};
 pub use shown::Shown;
 pub use slopes::{gradients, on_line, residual_along};
 pub use smoothness::Smoothness;

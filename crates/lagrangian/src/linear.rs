@@ -1,8 +1,6 @@
 //! Linear algebra of a few unknowns, on the stack.
 
-pub use crate::inverse::Inverse;
-
-use crate::mapped;
+use crate::{from_fn, mapped};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use thiserror::Error;
 
@@ -18,6 +16,12 @@ pub struct Singular {
 
 /// A pivot below it, relative to its row and column, is round-off.
 pub(crate) const THRESHOLD: f64 = 4.0 * f64::EPSILON;
+
+/// A pivot of the matrix `C K^-1 G'` of `M` constraints on `N` unknowns below it, relative to its row and column, is round-off: each entry
+/// is a sum of `N` products, and up to `M` of them have been eliminated.
+pub(crate) const fn dependent(n: usize, m: usize) -> f64 {
+    4.0 * (n + m) as f64 * f64::EPSILON
+}
 
 /// A factorisation `P A = L U` by elimination with scaled partial pivoting.
 ///
@@ -47,10 +51,10 @@ impl<const U: usize> Lu<U> {
     #[inline]
     pub fn above(matrix: [[f64; U]; U], threshold: f64) -> Result<Self, Singular> {
         let mut a = matrix;
-        let mut order: [usize; U] = crate::from_fn(|i| i);
+        let mut order: [usize; U] = from_fn(|i| i);
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
         let mut row = mapped(&a, |r| largest(&r).recip());
-        let column: [f64; U] = crate::from_fn(|j| largest(&crate::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
+        let column: [f64; U] = from_fn(|j| largest(&from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         let mut positive = true;
         for k in 0..U {
             // Exchanged element by element, at indices that are known at compile time, so that the matrix can stay in registers.
@@ -104,6 +108,124 @@ impl<const U: usize> Lu<U> {
             x[i] /= self.factors[i][i];
         }
         x
+    }
+}
+
+/// The inverse of a matrix of up to three rows that is far from singular, or the factorisation of any other: to solve with
+/// it several times, and quickly.
+#[derive(Debug, Clone, Copy)]
+pub enum Inverse<const U: usize> {
+    /// The rows of the inverse, by cofactors, and its determinant.
+    Cofactors([[f64; U]; U], f64),
+    /// The factorisation.
+    Factors(Lu<U>),
+}
+
+impl<const U: usize> Inverse<U> {
+    /// The determinant against the sum of the sizes of its terms: above it three digits of sixteen are lost to
+    /// cancellation, whatever the scale of rows and columns.
+    const CLEAR: f64 = 1e-3;
+
+    /// The inverse of a matrix given by rows.
+    ///
+    /// # Errors
+    /// As [`Lu::new`].
+    #[inline(always)]
+    pub fn new(a: &[[f64; U]; U]) -> Result<Self, Singular> {
+        Self::above(a, THRESHOLD)
+    }
+
+    /// The inverse of a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
+    ///
+    /// # Errors
+    /// As [`Lu::new`].
+    #[inline(always)]
+    pub fn above(a: &[[f64; U]; U], threshold: f64) -> Result<Self, Singular> {
+        match Self::by_cofactors(a) {
+            Some(inverse) => Ok(inverse),
+            None => Self::factorised(a, threshold),
+        }
+    }
+
+    /// As `above`, but `None` if the elimination of up to three rows loses more than three digits. For more rows the loss is not checked.
+    #[inline(always)]
+    pub(crate) fn clear_above(a: &[[f64; U]; U], threshold: f64) -> Option<Self> {
+        // Decided by the number of rows alone, at compile time: a result that may be of either kind would be stored and loaded again,
+        // with the latency of store forwarding.
+        match U {
+            0..=3 => Self::by_cofactors(a),
+            _ => Self::factorised(a, threshold).ok(),
+        }
+    }
+
+    #[inline(never)]
+    fn factorised(a: &[[f64; U]; U], threshold: f64) -> Result<Self, Singular> {
+        Lu::above(*a, threshold).map(Self::Factors)
+    }
+
+    #[inline(always)]
+    fn by_cofactors(a: &[[f64; U]; U]) -> Option<Self> {
+        let mut inverse = [[0.0; U]; U];
+        let (determinant, terms) = match U {
+            1 => {
+                inverse[0][0] = 1.0;
+                (a[0][0], a[0][0].abs())
+            }
+            2 => {
+                (inverse[0][0], inverse[0][1]) = (a[1][1], -a[0][1]);
+                (inverse[1][0], inverse[1][1]) = (-a[1][0], a[0][0]);
+                let [p, q] = [a[0][0] * a[1][1], a[0][1] * a[1][0]];
+                (p - q, p.abs() + q.abs())
+            }
+            3 => {
+                let (mut determinant, mut terms) = (0.0, 0.0);
+                for j in 0..3 {
+                    let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+                    for i in 0..3 {
+                        let (m, n) = ((i + 1) % 3, (i + 2) % 3);
+                        let [p, q] = [a[m][k] * a[n][l], a[m][l] * a[n][k]];
+                        inverse[j][i] = p - q;
+                        if i == 0 {
+                            determinant += a[0][j] * (p - q);
+                            terms += a[0][j].abs() * (p.abs() + q.abs());
+                        }
+                    }
+                }
+                (determinant, terms)
+            }
+            _ => return None,
+        };
+        let clear = determinant.abs() > Self::CLEAR * terms && terms.is_finite();
+        let scale = determinant.recip();
+        if !(clear && scale.is_finite()) {
+            return None;
+        }
+        for row in &mut inverse {
+            for x in row {
+                *x *= scale;
+            }
+        }
+        Some(Self::Cofactors(inverse, scale))
+    }
+
+    /// Whether the determinant is positive.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_positive(&self) -> bool {
+        match self {
+            Self::Cofactors(_, determinant) => *determinant > 0.0,
+            Self::Factors(lu) => lu.is_positive(),
+        }
+    }
+
+    /// The solution `x` of `A x = b`.
+    #[must_use]
+    #[inline(always)]
+    pub fn solve(&self, b: &[f64; U]) -> [f64; U] {
+        match self {
+            Self::Cofactors(inverse, _) => mapped(inverse, |row| (0..U).map(|i| row[i] * b[i]).sum()),
+            Self::Factors(lu) => lu.solve(*b),
+        }
     }
 }
 
@@ -172,4 +294,20 @@ pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f
     }
     let [lambda] = factor.solve(&right).data.0;
     Ok(lambda)
+}
+
+/// The least-squares solution `lambda` of `A' lambda = b`, `A` given by its `M` rows, where the elimination of up to three rows loses
+/// no more than three digits; for more rows that is not checked.
+#[must_use]
+#[inline(always)]
+pub fn clear_multipliers<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f64; N]) -> Option<[f64; M]> {
+    let gram = from_fn(|k| from_fn(|l| dot(&rows[k], &rows[l])));
+    let inverse = Inverse::clear_above(&gram, dependent(N, M))?;
+    Some(inverse.solve(&from_fn(|k| dot(&rows[k], b))))
+}
+
+/// The product of two vectors.
+#[inline(always)]
+pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    (0..N).map(|i| a[i] * b[i]).sum()
 }

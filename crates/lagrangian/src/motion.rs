@@ -2,7 +2,8 @@ use crate::linear::Singular;
 use crate::second::second_in_velocity;
 use crate::slopes::gradient_in_place;
 use crate::{
-    Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mapped, reaction_rows, redundant_rows,
+    AdmissibleBasis, Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mapped,
+    reaction_rows, redundant_rows,
 };
 use std::ops::Add;
 use thiserror::Error;
@@ -94,14 +95,21 @@ impl<const N: usize, const M: usize> Motion<N, M> {
     pub fn automatic<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
         let saddle = Self::equations(system, t, q, v);
         let basis = system.admissible_basis(t, q);
-        let of =
-            |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: mapped(&lambda, |l| -l) };
-        match saddle.solve(basis.as_ref()) {
-            Ok(solution) => Ok(of(solution)),
-            Err(source) => redundant_rows(system, t, q, v)
-                .map_or(Err(source), |rows| saddle.solve_some(rows))
-                .map(of)
-                .map_err(|source| MotionError { time: t, source }),
-        }
+        let (acceleration, lambda) = solved(system, (t, q, v), &saddle, basis.as_ref())?;
+        Ok(Self { acceleration, multiplier: mapped(&lambda, |l| -l) })
     }
+}
+
+/// The solution of the equations of motion, or of equations with their matrices; of rows that depend on one another and agree the
+/// independent ones alone are met.
+pub(crate) fn solved<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t, q, v): (f64, &[f64; N], &[f64; N]),
+    saddle: &Saddle<N, M>,
+    basis: Option<&AdmissibleBasis<f64, N, M>>,
+) -> Result<([f64; N], [f64; M]), MotionError> {
+    saddle
+        .solve(basis)
+        .or_else(|source| redundant_rows(system, t, q, v).map_or(Err(source), |rows| saddle.solve_some(rows)))
+        .map_err(|source| MotionError { time: t, source })
 }

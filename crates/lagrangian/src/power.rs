@@ -46,7 +46,7 @@ where
 }
 
 /// The power `-dL/dt` at which explicit time feeds the energy `v . L_v - L` (W).
-#[inline]
+#[inline(never)]
 pub fn lagrangian_power<Sys, const N: usize, const M: usize>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> f64
 where
     Sys: System<N, M>,

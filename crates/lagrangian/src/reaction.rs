@@ -1,5 +1,5 @@
 use crate::second::{AT_ONCE, BLOCK, seed};
-use crate::{Constraint, Dual, Scalar, System, from_fn, mapped};
+use crate::{Constraint, Dual, Scalar, SeldomNumber, System, from_fn, mapped};
 
 /// The rows along which the constraints act on the system at a velocity: `A(q, t)`, and `d phi / dv` where a constraint is
 /// not affine.
@@ -26,8 +26,8 @@ pub fn rows_along<Sys: System<N, M>, const N: usize, const M: usize>(
     q: &[f64; N],
     in_q: &[f64; N],
 ) -> [[Dual<f64, 1>; N]; M] {
-    let along = |re: f64, rate: f64| Dual { re, eps: [rate] };
-    system.constraint(along(t, in_t), &from_fn(|i| along(q[i], in_q[i]))).0
+    let rows = system.constraint(SeldomNumber::moving(t, in_t), &from_fn(|i| SeldomNumber::moving(q[i], in_q[i]))).0;
+    mapped(&rows, |row| mapped(&row, |a| Dual { re: a.value(), eps: [a.rate()] }))
 }
 
 /// The rows of the constraints on positions, `A_k = dg_k/dq` and `b_k = dg_k/dt`, from the functions of

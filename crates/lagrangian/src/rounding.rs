@@ -1,7 +1,7 @@
+use crate::motion::solved;
 use crate::{
     AdmissibleBasis, Bracket, Dual, Motion, MotionError, Reduced, Rounded, Saddle, System, configuration_slope,
-    energy_slope, from_fn, inverse_reduced_mass, mapped, mass_matrix, reaction_rows, redundant_rows, velocity_of,
-    velocity_slope,
+    energy_slope, from_fn, inverse_reduced_mass, mapped, mass_matrix, reaction_rows, velocity_of, velocity_slope,
 };
 
 /// The unit of rounding.
@@ -36,31 +36,26 @@ impl<const N: usize> MotionRounding<N> {
     ) -> Result<Self, MotionError> {
         let Motion { multiplier, .. } = Motion::of(system, t, q, v)?;
         let (place, velocity) = (mapped(q, Rounded::once), mapped(v, Rounded::once));
-        let slope = configuration_slope(system, Rounded::exact(t), &place, &velocity);
+        let fixed = |x: &[Rounded; N]| mapped(x, Dual::fixed);
+        let slope = configuration_slope(system, Dual::fixed(Rounded::exact(t)), &fixed(&place), &fixed(&velocity));
         let pushed = system.force(Rounded::exact(t), &place, &velocity);
         // Along the motion at constant velocity.
         let along: [Dual<Rounded, 1>; N] = from_fn(|i| Dual { re: place[i], eps: [velocity[i]] });
         let time = Dual { re: Rounded::exact(t), eps: [Rounded::exact(1.0)] };
-        let carried = velocity_slope(system, time, &along, &mapped(&velocity, Dual::fixed));
+        let carried = velocity_slope(system, time, &along, &fixed(&velocity));
         let a = reaction_rows(system, t, q, v);
         let force = from_fn(|i| {
             let reaction: f64 = (0..M).map(|k| (a[k][i] * multiplier[k]).abs()).sum();
-            UNIT * (slope[i].size + pushed.map_or(0.0, |f| f[i].size) + carried[i].eps[0].size + reaction)
+            UNIT * (slope[i].re.size + pushed.map_or(0.0, |f| f[i].size) + carried[i].eps[0].size + reaction)
         });
 
         // What a force does to the accelerations, the constraints met.
         let (_, block) = mass_matrix(system, t, q, v);
-        let mut acceleration = [0.0; N];
+        let (basis, mut acceleration) = (system.admissible_basis(t, q), [0.0; N]);
         for j in 0..N {
             let right = from_fn(|i| if i == j { force[j] } else { 0.0 });
             let saddle = Saddle { block, transposed: a, rows: a, right, level: [0.0; M] };
-            let solved = saddle.solve(system.admissible_basis(t, q).as_ref());
-            let (response, _) = match solved {
-                Ok(solution) => solution,
-                Err(source) => redundant_rows(system, t, q, v)
-                    .map_or(Err(source), |rows| saddle.solve_some(rows))
-                    .map_err(|source| MotionError { time: t, source })?,
-            };
+            let (response, _) = solved(system, (t, q, v), &saddle, basis.as_ref())?;
             for i in 0..N {
                 acceleration[i] += response[i].abs();
             }

@@ -1,3 +1,4 @@
+use crate::linear::dot;
 use crate::{Rows, from_fn, mapped};
 
 /// The span of the rows of a constraint, in a metric that has no units: its dimension is their rank.
@@ -214,10 +215,6 @@ fn raised<const N: usize>(l: &[[f64; N]; N], z: &[f64; N]) -> [f64; N] {
         x[i] = (x[i] - (i + 1..N).map(|j| l[j][i] * x[j]).sum::<f64>()) / l[i][i];
     }
     x
-}
-
-fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    (0..N).map(|i| a[i] * b[i]).sum()
 }
 
 /// The length, scaled so that it neither overflows nor vanishes by its squares.
