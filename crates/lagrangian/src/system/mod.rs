@@ -1,4 +1,25 @@
-use crate::{AdmissibleBasis, Reduced, Scalar};
+//! What a system is.
+
+mod basis;
+mod by_hand;
+mod effect;
+mod gradients;
+mod parametrised;
+mod piecewise;
+mod with;
+mod with_basis;
+
+pub use basis::{AdmissibleBasis, linear_basis};
+pub use by_hand::{Reduced, StageEvaluation};
+pub use effect::{Effect, EffectSlope};
+pub(crate) use effect::{add_all, sum};
+pub use gradients::{Along, Gradients, Seeded, SeededMember};
+pub use parametrised::{Member, Parametrised, Unparametrised};
+pub use piecewise::{Piecewise, whole_steps};
+pub use with::With;
+pub use with_basis::WithBasis;
+
+use crate::Scalar;
 
 /// The constraint `A(q, t) v + b(q, t) = 0` at one point: the `M` rows of `A`, and `b`.
 pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);

@@ -1,4 +1,4 @@
-use crate::reduced::shortest;
+use crate::shortest;
 use crate::{AdmissibleBasis, Called, Constraint, Dual, HyperDual, Parametrised, Scalar, from_fn, mapped, seed};
 
 /// A number with its derivatives in eight directions.

@@ -1,4 +1,4 @@
-use crate::{AdmissibleBasis, Constraint, Dual, Gradient, Rounded, Scalar, ScalarFunction, System, from_fn, mapped};
+use crate::{AdmissibleBasis, Constraint, Gradient, Scalar, ScalarFunction, from_fn, mapped};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number whose operations are calls, never inlined: for evaluations that are made seldom, and for numbers of many parts. A model on such
@@ -68,44 +68,6 @@ impl<S: Scalar> Called<S> {
     ) -> AdmissibleBasis<S, N, M> {
         AdmissibleBasis::from_fn(|k| Self::plain(&basis.vectors()[k]))
     }
-}
-
-/// A number with a bound on its rounding, and with its derivative along a motion.
-type RoundedAlong = Dual<Rounded, 1>;
-
-/// `L_q(t, q, v)` with bounds on the rounding, and the rates of both along a motion.
-#[inline(never)]
-pub fn configuration_slope<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t: RoundedAlong,
-    q: &[RoundedAlong; N],
-    v: &[RoundedAlong; N],
-) -> [RoundedAlong; N] {
-    let in_q = from_fn(|i| Called(Gradient::variable(q[i], i)));
-    rounded_lagrangian(system, t, &in_q, &mapped(v, |v| Called(Gradient::fixed(v))))
-}
-
-/// The momenta `L_v(t, q, v)` with bounds on the rounding, and the rates of both along a motion.
-#[inline(never)]
-pub fn velocity_slope<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t: RoundedAlong,
-    q: &[RoundedAlong; N],
-    v: &[RoundedAlong; N],
-) -> [RoundedAlong; N] {
-    let in_v = from_fn(|i| Called(Gradient::variable(v[i], i)));
-    rounded_lagrangian(system, t, &mapped(q, |q| Called(Gradient::fixed(q))), &in_v)
-}
-
-/// The gradient of the Lagrangian in the variables among `q` and `v`, compiled once.
-#[inline(never)]
-fn rounded_lagrangian<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t: RoundedAlong,
-    q: &[Called<Gradient<RoundedAlong, N>>; N],
-    v: &[Called<Gradient<RoundedAlong, N>>; N],
-) -> [RoundedAlong; N] {
-    system.lagrangian(Called(Gradient::fixed(t)), q, v).0.gradient()
 }
 
 /// Operations of numbers that are never inlined.

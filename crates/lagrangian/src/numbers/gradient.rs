@@ -1,4 +1,4 @@
-use crate::derived::{Derived, derived_functions, linear_operators};
+use crate::numbers::derived::{Derived, derived_functions, linear_operators};
 use crate::{Scalar, ScalarFunction, array};
 use std::ops::{Add, Div, Mul};
 

@@ -1,5 +1,5 @@
 use crate::Scalar;
-use crate::derived::derived_operators;
+use crate::numbers::derived::derived_operators;
 use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};
 

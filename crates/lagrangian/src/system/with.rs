@@ -1,5 +1,5 @@
-use crate::effect::{add_all, sum};
 use crate::{AdmissibleBasis, Constraint, Effect, Motion, Reduced, ReducedError, Scalar, System, velocity_of};
+use crate::{add_all, sum};
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
 ///

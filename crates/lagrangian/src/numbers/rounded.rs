@@ -1,4 +1,4 @@
-use crate::derived::derived_operators;
+use crate::numbers::derived::derived_operators;
 use crate::{Scalar, mapped};
 use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};

@@ -1,7 +1,7 @@
-use crate::motion::solved;
+use crate::solved;
 use crate::{
-    AdmissibleBasis, Bracket, Dual, Motion, MotionError, Reduced, Rounded, Saddle, System, configuration_slope,
-    energy_slope, from_fn, inverse_reduced_mass, mapped, mass_matrix, reaction_rows, velocity_of, velocity_slope,
+    AdmissibleBasis, Bracket, Called, Dual, Gradient, Motion, MotionError, Reduced, Rounded, Saddle, System,
+    energy_slope, from_fn, inverse_reduced_mass, mapped, mass_matrix, reaction_rows, velocity_of,
 };
 
 /// The unit of rounding.
@@ -62,6 +62,44 @@ impl<const N: usize> MotionRounding<N> {
         }
         Ok(Self { momentum: mapped(&carried, |p| UNIT * p.re.size), force, acceleration })
     }
+}
+
+/// A number with a bound on its rounding, and with its derivative along a motion.
+type RoundedAlong = Dual<Rounded, 1>;
+
+/// `L_q(t, q, v)` with bounds on the rounding, and the rates of both along a motion.
+#[inline(never)]
+pub fn configuration_slope<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: RoundedAlong,
+    q: &[RoundedAlong; N],
+    v: &[RoundedAlong; N],
+) -> [RoundedAlong; N] {
+    let in_q = from_fn(|i| Called(Gradient::variable(q[i], i)));
+    rounded_lagrangian(system, t, &in_q, &mapped(v, |v| Called(Gradient::fixed(v))))
+}
+
+/// The momenta `L_v(t, q, v)` with bounds on the rounding, and the rates of both along a motion.
+#[inline(never)]
+pub fn velocity_slope<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: RoundedAlong,
+    q: &[RoundedAlong; N],
+    v: &[RoundedAlong; N],
+) -> [RoundedAlong; N] {
+    let in_v = from_fn(|i| Called(Gradient::variable(v[i], i)));
+    rounded_lagrangian(system, t, &mapped(q, |q| Called(Gradient::fixed(q))), &in_v)
+}
+
+/// The gradient of the Lagrangian in the variables among `q` and `v`, compiled once.
+#[inline(never)]
+fn rounded_lagrangian<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: RoundedAlong,
+    q: &[Called<Gradient<RoundedAlong, N>>; N],
+    v: &[Called<Gradient<RoundedAlong, N>>; N],
+) -> [RoundedAlong; N] {
+    system.lagrangian(Called(Gradient::fixed(t)), q, v).0.gradient()
 }
 
 /// The rounding of the quasi-momenta and of their rates, as a [`Bracket`] gives them; none without a basis. Their terms are others than those

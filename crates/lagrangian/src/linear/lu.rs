@@ -1,4 +1,4 @@
-//! Linear algebra of a few unknowns, on the stack.
+//! Factorisations.
 
 use crate::{from_fn, mapped};
 use nalgebra::{ArrayStorage, SMatrix, SVector};

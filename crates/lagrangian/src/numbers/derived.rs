@@ -171,11 +171,11 @@ macro_rules! derived_functions {
         }
         #[inline(always)]
         fn length<const K: usize>(components: &[Self; K]) -> Self {
-            crate::derived::derived_length(components)
+            crate::numbers::derived::derived_length(components)
         }
         #[inline(always)]
         fn atan2(self, x: Self) -> Self {
-            crate::derived::derived_angle(self, x)
+            crate::numbers::derived::derived_angle(self, x)
         }
     };
 }
@@ -210,7 +210,7 @@ macro_rules! linear_operators {
                 self.linear_in(self.re / o, #[inline(always)] |e| e / o)
             }
         }
-        crate::derived::derived_operators!([$($generics)*] $number);
+        crate::numbers::derived::derived_operators!([$($generics)*] $number);
     };
 }
 /// Operators that follow from addition, negation and multiplication, for the number types of this crate.

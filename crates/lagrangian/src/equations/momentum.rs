@@ -1,4 +1,4 @@
-use crate::gradient::by_places;
+use crate::by_places;
 use crate::{Gradient, Scalar, System, second_along};
 
 /// `L(t, q, v)` with its gradient in `v`, the momenta. Inlined, so that code evaluated beside it shares the sines and other functions of

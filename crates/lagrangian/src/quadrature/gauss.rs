@@ -1,5 +1,3 @@
-//! Quadrature rules on `[0, 1]`, computed to rounding.
-
 use crate::{Twofold, from_fn, mapped};
 use std::ops::{Div, Mul, Sub};
 

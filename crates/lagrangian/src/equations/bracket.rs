@@ -1,5 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::second::{AT_ONCE, seed};
+use crate::{AT_ONCE, seed};
 use crate::{AdmissibleBasis, Dual, Scalar, System, from_fn, mapped, mass_matrix};
 
 /// A system without explicit time and with `b = 0`, at one point of the dual `D*` of its distribution.

@@ -1,4 +1,4 @@
-use crate::second::{AT_ONCE, BLOCK, seed};
+use crate::{AT_ONCE, BLOCK, seed};
 use crate::{Constraint, Dual, Scalar, SeldomNumber, System, from_fn, mapped};
 
 /// The rows along which the constraints act on the system at a velocity: `A(q, t)`, and `d phi / dv` where a constraint is

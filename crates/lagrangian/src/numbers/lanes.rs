@@ -1,4 +1,4 @@
-use crate::derived::derived_operators;
+use crate::numbers::derived::derived_operators;
 use crate::{Scalar, ScalarFunction, from_fn};
 use scalar::sincos;
 use std::ops::{Add, Div, Mul, Neg};

@@ -1,6 +1,6 @@
+use crate::gradient_in_place;
 use crate::linear::Singular;
-use crate::second::second_in_velocity;
-use crate::slopes::gradient_in_place;
+use crate::second_in_velocity;
 use crate::{
     AdmissibleBasis, Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mapped,
     reaction_rows, redundant_rows,
