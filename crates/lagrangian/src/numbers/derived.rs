@@ -27,11 +27,7 @@ pub(crate) trait Derived: Scalar {
     /// Value and derivatives times a factor that has none.
     #[inline(always)]
     fn times(self, factor: Self::Base) -> Self {
-        self.linear_in(
-            self.value() * factor,
-            #[inline(always)]
-            |e| e * factor,
-        )
+        self.linear_in(self.value() * factor, |e| e * factor)
     }
 }
 
@@ -39,17 +35,9 @@ pub(crate) trait Derived: Scalar {
 #[inline(always)]
 pub(crate) fn derived_length<D: Derived, const K: usize>(x: &[D; K]) -> D {
     let zero = D::Base::zero();
-    let values: [D::Base; K] = array(
-        zero,
-        #[inline(always)]
-        |k| x[k].value(),
-    );
+    let values: [D::Base; K] = array(zero, |k| x[k].value());
     let r = D::Base::length(&values);
-    let direction: [D::Base; K] = array(
-        zero,
-        #[inline(always)]
-        |k| r.where_positive(values[k] / r, zero),
-    );
+    let direction: [D::Base; K] = array(zero, |k| r.where_positive(values[k] / r, zero));
     let mut along = D::lifted(zero);
     for k in 0..K {
         along += x[k].times(direction[k]);
@@ -88,86 +76,45 @@ macro_rules! derived_functions {
         #[inline(always)]
         fn sin_cos(self) -> (Self, Self) {
             let (sin, cos) = self.re.sin_cos();
-            (
-                self.function(
-                    sin,
-                    cos,
-                    #[inline(always)]
-                    || -sin,
-                ),
-                self.function(
-                    cos,
-                    -sin,
-                    #[inline(always)]
-                    || -cos,
-                ),
-            )
+            (self.function(sin, cos, || -sin), self.function(cos, -sin, || -cos))
         }
         #[inline(always)]
         fn exp(self) -> Self {
             let f = self.re.exp();
-            self.function(
-                f,
-                f,
-                #[inline(always)]
-                || f,
-            )
+            self.function(f, f, || f)
         }
         #[inline(always)]
         fn ln(self) -> Self {
             let df = self.re.recip();
-            self.function(
-                self.re.ln(),
-                df,
-                #[inline(always)]
-                || -(df * df),
-            )
+            self.function(self.re.ln(), df, || -(df * df))
         }
         #[inline(always)]
         fn sqrt(self) -> Self {
             let f = self.re.sqrt();
             let df = f.recip() * 0.5;
-            self.function(
-                f,
-                df,
-                #[inline(always)]
-                || -(df / self.re * 0.5),
-            )
+            self.function(f, df, || -(df / self.re * 0.5))
         }
         #[inline(always)]
         fn powi(self, n: i32) -> Self {
             match n {
                 0 => Self::constant(1.0),
                 1 => self,
-                _ => self.function(
-                    self.re.powi(n),
-                    self.re.powi(n - 1) * f64::from(n),
-                    #[inline(always)]
-                    || self.re.powi(n - 2) * (f64::from(n) * f64::from(n - 1)),
-                ),
+                _ => self.function(self.re.powi(n), self.re.powi(n - 1) * f64::from(n), || {
+                    self.re.powi(n - 2) * (f64::from(n) * f64::from(n - 1))
+                }),
             }
         }
         #[inline(always)]
         fn recip(self) -> Self {
             let f = self.re.recip();
             let df = -(f * f);
-            self.function(
-                f,
-                df,
-                #[inline(always)]
-                || -(df * f) * 2.0,
-            )
+            self.function(f, df, || -(df * f) * 2.0)
         }
         #[inline(always)]
         fn apply<F: ScalarFunction>(self, function: F) -> Self {
             let f = self.re.apply(function);
             let slope = function.slope(self.re, f);
-            self.function(
-                f,
-                slope,
-                #[inline(always)]
-                || function.curvature(self.re, f, slope),
-            )
+            self.function(f, slope, || function.curvature(self.re, f, slope))
         }
         #[inline(always)]
         fn length<const K: usize>(components: &[Self; K]) -> Self {
@@ -186,7 +133,7 @@ macro_rules! linear_operators {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                self.linear_in(-self.re, #[inline(always)] |e| -e)
+                self.linear_in(-self.re, |e| -e)
             }
         }
         impl<$($generics)*> std::ops::Add<f64> for $number {
@@ -200,14 +147,14 @@ macro_rules! linear_operators {
             type Output = Self;
             #[inline(always)]
             fn mul(self, o: f64) -> Self {
-                self.linear_in(self.re * o, #[inline(always)] |e| e * o)
+                self.linear_in(self.re * o, |e| e * o)
             }
         }
         impl<$($generics)*> std::ops::Div<f64> for $number {
             type Output = Self;
             #[inline(always)]
             fn div(self, o: f64) -> Self {
-                self.linear_in(self.re / o, #[inline(always)] |e| e / o)
+                self.linear_in(self.re / o, |e| e / o)
             }
         }
         crate::numbers::derived::derived_operators!([$($generics)*] $number);

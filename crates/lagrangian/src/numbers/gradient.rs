@@ -56,33 +56,23 @@ impl<S: Scalar, const N: usize> Gradient<S, N> {
     #[must_use]
     #[inline(always)]
     pub fn all_fixed<const K: usize>(x: &[S; K]) -> [Self; K] {
-        array(
-            Self::fixed(S::zero()),
-            #[inline(always)]
-            |i| Self::fixed(x[i]),
-        )
+        array(Self::fixed(S::zero()), |i| Self::fixed(x[i]))
     }
 
     /// The point `x`, each of its components a variable.
     #[must_use]
     #[inline(always)]
     pub fn variables<const K: usize>(x: &[S; K]) -> [Self; K] {
-        array(
-            Self::fixed(S::zero()),
-            #[inline(always)]
-            |i| Self::variable(x[i], i),
-        )
+        array(Self::fixed(S::zero()), |i| Self::variable(x[i], i))
     }
 
     /// The point `x`, its components from number `from` on the variables, and the others numbers that do not depend on them.
     #[must_use]
     #[inline(always)]
     pub fn some_variables<const K: usize>(x: &[S; K], from: usize) -> [Self; K] {
-        array(
-            Self::fixed(S::zero()),
-            #[inline(always)]
-            |i| if (from..from + N).contains(&i) { Self::variable(x[i], i - from) } else { Self::fixed(x[i]) },
-        )
+        array(Self::fixed(S::zero()), |i| {
+            if (from..from + N).contains(&i) { Self::variable(x[i], i - from) } else { Self::fixed(x[i]) }
+        })
     }
 
     /// The derivatives in the first `K` variables; zero in those that there are not.
@@ -90,32 +80,16 @@ impl<S: Scalar, const N: usize> Gradient<S, N> {
     #[inline(always)]
     pub fn gradient<const K: usize>(&self) -> [S; K] {
         let parts = self.parts.unwrap_or([S::zero(); N]);
-        array(
-            S::zero(),
-            #[inline(always)]
-            |i| if i < N { parts[i] } else { S::zero() },
-        )
+        array(S::zero(), |i| if i < N { parts[i] } else { S::zero() })
     }
 
     #[inline(always)]
     fn with(self, o: Self, re: S, one: impl Fn(S) -> S, other: impl Fn(S) -> S) -> Self {
         let parts = match (self.parts, o.parts) {
             (None, None) => None,
-            (Some(a), None) => Some(array(
-                S::zero(),
-                #[inline(always)]
-                |i| one(a[i]),
-            )),
-            (None, Some(b)) => Some(array(
-                S::zero(),
-                #[inline(always)]
-                |i| other(b[i]),
-            )),
-            (Some(a), Some(b)) => Some(array(
-                S::zero(),
-                #[inline(always)]
-                |i| one(a[i]) + other(b[i]),
-            )),
+            (Some(a), None) => Some(array(S::zero(), |i| one(a[i]))),
+            (None, Some(b)) => Some(array(S::zero(), |i| other(b[i]))),
+            (Some(a), Some(b)) => Some(array(S::zero(), |i| one(a[i]) + other(b[i]))),
         };
         Self { re, parts }
     }
@@ -125,28 +99,14 @@ impl<S: Scalar, const N: usize> Add for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        self.with(
-            o,
-            self.re + o.re,
-            #[inline(always)]
-            |a| a,
-            #[inline(always)]
-            |b| b,
-        )
+        self.with(o, self.re + o.re, |a| a, |b| b)
     }
 }
 impl<S: Scalar, const N: usize> Mul for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        self.with(
-            o,
-            self.re * o.re,
-            #[inline(always)]
-            |a| a * o.re,
-            #[inline(always)]
-            |b| self.re * b,
-        )
+        self.with(o, self.re * o.re, |a| a * o.re, |b| self.re * b)
     }
 }
 impl<S: Scalar, const N: usize> Div for Gradient<S, N> {
@@ -154,14 +114,7 @@ impl<S: Scalar, const N: usize> Div for Gradient<S, N> {
     #[inline(always)]
     fn div(self, o: Self) -> Self {
         let re = self.re / o.re;
-        self.with(
-            o,
-            re,
-            #[inline(always)]
-            |a| a / o.re,
-            #[inline(always)]
-            |b| -(re * b) / o.re,
-        )
+        self.with(o, re, |a| a / o.re, |b| -(re * b) / o.re)
     }
 }
 linear_operators!([S: Scalar, const N: usize] Gradient<S, N>);
@@ -172,9 +125,7 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
         then.with(
             otherwise,
             self.re.where_positive(then.re, otherwise.re),
-            #[inline(always)]
             |a| self.re.where_positive(a, S::zero()),
-            #[inline(always)]
             |b| self.re.where_positive(S::zero(), b),
         )
     }
@@ -217,24 +168,11 @@ impl<S: Scalar, const N: usize> Derived for Gradient<S, N> {
     }
     #[inline(always)]
     fn linear_in(self, re: S, by: impl Fn(S) -> S) -> Self {
-        let parts = self.parts.map(
-            #[inline(always)]
-            |e| {
-                array(
-                    S::zero(),
-                    #[inline(always)]
-                    |i| by(e[i]),
-                )
-            },
-        );
+        let parts = self.parts.map(|e| array(S::zero(), |i| by(e[i])));
         Self { re, parts }
     }
     #[inline(always)]
     fn function(self, f: S, df: S, _ddf: impl FnOnce() -> S) -> Self {
-        self.linear_in(
-            f,
-            #[inline(always)]
-            |e| df * e,
-        )
+        self.linear_in(f, |e| df * e)
     }
 }
