@@ -95,8 +95,6 @@ struct OfPair<'a, L, const N: usize> {
 }
 
 impl<L: DiscreteLagrangian<N>, const N: usize> TwiceDifferentiable<f64, N> for OfPair<'_, L, N> {
-    const SYMMETRIC: bool = false;
-
     fn at<const P: usize>(&self, first: usize, second: usize) -> HyperDual<f64, P, P> {
         let Self { of, time: (t0, h), q0, v } = *self;
         let q0: [HyperDual<f64, P, P>; N] = from_fn(|i| HyperDual::linear(q0[i], seed(h, i, first), [0.0; P]));

@@ -1,4 +1,4 @@
-use lagrangian::{AdmissibleBasis, Called, Gradient, Reduced, System, from_fn, quasi_velocities};
+use lagrangian::{AdmissibleBasis, Called, Gradient, Reduced, SeldomNumber, System, from_fn, quasi_velocities};
 use std::fmt;
 use thiserror::Error;
 
@@ -160,7 +160,7 @@ impl fmt::Display for NotANumber {
 
 /// A number with a derivative in each of two variables, and the second derivative in both. It has no derivative in a variable that it does
 /// not depend on: zero times infinity would be NaN.
-type AnyNumber = Called<Twice>;
+type AnyNumber = SeldomNumber;
 type Twice = Gradient<Once, 1>;
 type Once = Gradient<f64, 1>;
 

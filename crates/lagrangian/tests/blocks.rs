@@ -4,8 +4,7 @@ use crate::common::component;
 use approx::assert_relative_eq;
 use lagrangian::{
     Constraint, ConstraintSlopes, Dual, HyperDual, Scalar, System, add_position_curvature, add_reaction_curvature,
-    classify, constraint_residual, mass_matrix, position_rows, residual_along, second_at_node, second_in_both,
-    second_in_place,
+    classify, constraint_residual, mass_matrix, position_rows, residual_along, second_along,
 };
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -76,7 +75,7 @@ proptest! {
         let in_q: [Whole; N] = from_fn(|i| HyperDual::linear(q[i], along(back)(i), along(ahead)(i)));
         let in_v: [Whole; N] = from_fn(|i| HyperDual::linear(v[i], along(-1.0)(i), unit(i)));
         let whole = Long.lagrangian(HyperDual::fixed(t), &in_q, &in_v);
-        let found = second_at_node(&Long, t, &q, &v, back, ahead);
+        let found = second_along(&Long, t, (&q, &v), [back, -1.0], Some([ahead, 1.0]));
         assert_eq!((found.re, found.e1, found.e2), (whole.re, whole.e1, whole.e2));
         same(&found.e12, &whole.e12, false);
 
@@ -106,13 +105,13 @@ proptest! {
             }
         }
 
-        let (whole, found) = (Long.lagrangian(time, &twice(&q), &fixed_v), second_in_place(&Long, t, &q, &v));
+        let (whole, found) = (Long.lagrangian(time, &twice(&q), &fixed_v), second_along(&Long, t, (&q, &v), [1.0, 0.0], None));
         assert_eq!((found.re, found.e1, found.e2), (whole.re, whole.e1, whole.e2));
         same(&found.e12, &whole.e12, true);
 
         let first: [Whole; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), [0.0; N]));
         let second: [Whole; N] = from_fn(|i| HyperDual::linear(v[i], [0.0; N], unit(i)));
-        let (whole, found) = (Long.lagrangian(time, &first, &second), second_in_both(&Long, t, &q, &v));
+        let (whole, found) = (Long.lagrangian(time, &first, &second), second_along(&Long, t, (&q, &v), [1.0, 0.0], Some([0.0, 1.0])));
         assert_eq!((found.re, found.e1, found.e2), (whole.re, whole.e1, whole.e2));
         same(&found.e12, &whole.e12, false);
     }

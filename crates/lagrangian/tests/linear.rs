@@ -117,7 +117,24 @@ proptest! {
             for i in 0..3 {
                 approx::assert_relative_eq!(z[i], x[i], epsilon = 1e-13);
             }
-            assert_eq!(factors.is_positive(), saddle.solve_oriented(basis).unwrap().2);
+            let mut whole = [[0.0; 4]; 4];
+            match basis {
+                Some(basis) => {
+                    for (row, w) in basis.vectors().iter().enumerate() {
+                        for j in 0..3 {
+                            whole[row][j] = (0..3).map(|i| w[i] * block[i][j]).sum();
+                        }
+                    }
+                    (whole[2], whole[3][3]) = ([-sin, cos, 0.25, 0.0], 1.0);
+                }
+                None => {
+                    for i in 0..3 {
+                        whole[i] = [block[i][0], block[i][1], block[i][2], row[i]];
+                    }
+                    whole[3] = [-sin, cos, 0.25, 0.0];
+                }
+            }
+            assert_eq!(factors.is_positive(), Lu::new(whole).unwrap().is_positive());
         }
     }
 

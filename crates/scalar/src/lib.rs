@@ -3,18 +3,14 @@
 //! Numbers with derivatives, and many at once in vector registers, are in the crate `lagrangian`. A program that works on formulas
 //! only, as the macro `system!` does while it compiles, needs no more than this.
 
-mod assigning;
 mod functions;
-mod fused;
 mod inlined;
-mod length;
 #[cfg(feature = "num-dual")]
 mod num_dual;
 mod scalar;
 pub mod sincos;
 
 pub use functions::ScalarFunction;
-pub use fused::mul_add;
 pub use inlined::{array, called, from_fn, mapped};
-pub use scalar::{Scalar, exponential};
+pub use scalar::{Scalar, exponential, mul_add};
 pub use sincos::sin_cos_wrapped;

@@ -288,7 +288,7 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
-        crate::length::length(components)
+        length(components)
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
@@ -298,4 +298,70 @@ impl Scalar for f64 {
     fn is_zero(&self) -> bool {
         *self == 0.0
     }
+}
+
+/// The length of a vector of numbers, without overflow or underflow in its squares.
+#[inline(always)]
+fn length<const K: usize>(x: &[f64; K]) -> f64 {
+    /// Squares that add up to less may have lost digits: `2^53` times the smallest normal number.
+    const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON * 2.0;
+    let sum = sum_of_squares(x, 1.0);
+    if (LEAST..=f64::MAX).contains(&sum) { sum.sqrt() } else { scaled(x, sum) }
+}
+
+#[inline(always)]
+fn sum_of_squares<const K: usize>(x: &[f64; K], scale: f64) -> f64 {
+    let mut sum = 0.0;
+    for x in x {
+        let part = x / scale;
+        sum += part * part;
+    }
+    sum
+}
+
+/// The length if the sum of the squares overflows or underflows: computed in units of the power of two below the largest component.
+#[cold]
+#[inline(never)]
+fn scaled<const K: usize>(x: &[f64; K], sum: f64) -> f64 {
+    const EXPONENT: u64 = f64::INFINITY.to_bits();
+    let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if sum.is_nan() || largest == 0.0 || largest.is_infinite() {
+        return sum;
+    }
+    let scale = f64::from_bits(largest.to_bits() & EXPONENT).max(f64::MIN_POSITIVE);
+    sum_of_squares(x, scale).sqrt() * scale
+}
+
+/// `a b + c`: with one rounding where the build is for machines with a fused instruction, else with two. Without the instruction
+/// `f64::mul_add` would be a call.
+#[must_use]
+#[inline(always)]
+pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// The operators `+=`, `-=` and `*=` (by a plain number) of a [`Scalar`](crate::Scalar), from `+`, `-` and `*`:
+/// `assigning_operators!([S: Scalar] Number<S>);`
+#[macro_export]
+macro_rules! assigning_operators {
+    ([$($generics:tt)*] $number:ty) => {
+        impl<$($generics)*> ::core::ops::AddAssign for $number {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+        impl<$($generics)*> ::core::ops::SubAssign for $number {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+        impl<$($generics)*> ::core::ops::MulAssign<f64> for $number {
+            #[inline(always)]
+            fn mul_assign(&mut self, factor: f64) {
+                *self = *self * factor;
+            }
+        }
+    };
 }

@@ -6,9 +6,9 @@ use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
     PowerSources, ReducedError, ReducedSlope, Smoothness, System, add_position_curvature, add_reaction_curvature,
-    constraint_residual, energy, energy_slope, force_power, from_fn, gradients, inverse_reduced_mass, lagrangian_power,
-    linear_basis, mass_matrix, momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope,
-    residual_along, rows_along, second_at_node, second_in_both, second_in_place, vectorized, velocity_of,
+    constraint_residual, energy, energy_slope, force_power, from_fn, gradient_in_velocity, gradients,
+    inverse_reduced_mass, lagrangian_power, linear_basis, mass_matrix, momentum, position_misses, quasi_velocities,
+    reaction_rows, reduced_slope, residual_along, rows_along, second_along, vectorized, velocity_of,
 };
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys {
@@ -29,7 +29,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
     }
 
     fn momentum_and_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], Constraint<f64, N, M>) {
-        (momentum(self, t, q, v), System::constraint(self, t, q))
+        (gradient_in_velocity(self, t, q, v).1, System::constraint(self, t, q))
     }
 
     fn mass_matrix(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], [[f64; N]; N]) {
@@ -42,8 +42,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
     }
 
     fn second_slopes(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> SecondSlopes<N> {
-        let in_q = second_in_place(self, t, q, v);
-        let l_qv = second_in_both(self, t, q, v).e12;
+        let (along_q, along_v) = ([1.0, 0.0], [0.0, 1.0]);
+        let in_q = second_along(self, t, (q, v), along_q, None);
+        let l_qv = second_along(self, t, (q, v), along_q, Some(along_v)).e12;
         let (l_v, l_vv) = mass_matrix(self, t, q, v);
         let in_place = self.force_along(t, q, v, 1.0, 0.0);
         let force = in_place.and_then(|in_place| Some([in_place, self.force_along(t, q, v, 0.0, 1.0)?]));
@@ -51,7 +52,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
     }
 
     fn at_node(&self, t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N> {
-        second_at_node(self, t, q, v, back, ahead)
+        second_along(self, t, (q, v), [back, -1.0], Some([ahead, 1.0]))
     }
 
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]> {

@@ -1,5 +1,5 @@
 use crate::{NotANumber, not_a_number};
-use lagrangian::{AdmissibleBasis, Dependence, Dual, RowSpace, Rows, Scalar, System, mapped};
+use lagrangian::{AdmissibleBasis, Dependence, RowSpace, Rows, Scalar, SeldomNumber, System, lagrangian_power, mapped};
 
 /// The questions that a system answers after a step has failed, or before the first one.
 pub trait Diagnosis<const N: usize, const M: usize> {
@@ -47,17 +47,19 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Diagnosis<N, M> for Sys 
     }
 
     fn constraints_move(&self, t: f64, q: &[f64; N]) -> bool {
-        let (_, nearby) = System::constraint(self, Dual::fixed(t), &Dual::variables(q));
-        !nearby.iter().all(Scalar::is_zero)
+        let still = |j: usize| {
+            let (_, b) = System::constraint(self, SeldomNumber::fixed(t), &SeldomNumber::along_one(q, j));
+            b.iter().all(Scalar::is_zero)
+        };
+        !(0..N).all(still)
     }
 
     fn depends_on_time(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> bool {
-        let t = Dual { re: t, eps: [1.0] };
-        let (q, v) = (mapped(q, Dual::fixed), mapped(v, Dual::fixed));
-        let (a, b) = System::constraint(self, t, &q);
         // Numbers that are not finite fail later, and are named there.
-        let mut changes = System::lagrangian(self, t, &q, &v).eps[0].abs() > 0.0;
-        let mut see = |x: &Dual<f64, 1>| changes |= x.eps[0].abs() > 0.0;
+        let mut changes = lagrangian_power(self, t, q, v).abs() > 0.0;
+        let mut see = |x: &SeldomNumber| changes |= x.rate().abs() > 0.0;
+        let (t, q) = (SeldomNumber::moving(t, 1.0), mapped(q, SeldomNumber::fixed));
+        let (a, b) = System::constraint(self, t, &q);
         let basis = self.admissible_basis(t, &q);
         // Loops: iterators would be a dozen functions more for each system.
         for row in a.iter().chain(basis.as_ref().map_or(&[][..], AdmissibleBasis::vectors)) {

@@ -1,6 +1,6 @@
 use lagrangian::{
-    Constraint, MotionError, MotionRounding, Rounded, System, bracket_rounding, configuration_slope,
-    constraint_residual, reduced_rounding, velocity_slope,
+    Constraint, Dual, MotionError, MotionRounding, Rounded, System, bracket_rounding, configuration_slope,
+    constraint_residual, mapped, reduced_rounding, velocity_slope,
 };
 
 /// The functions of a system with bounds on the rounding of their terms, for convergence tests of corrections that stall.
@@ -39,12 +39,12 @@ pub trait RoundedMechanics<const N: usize, const M: usize> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> RoundedMechanics<N, M> for Sys {
     #[cold]
     fn momentum_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
-        velocity_slope(self, t, q, v)
+        mapped(&velocity_slope(self, Dual::fixed(t), &mapped(q, Dual::fixed), &mapped(v, Dual::fixed)), |p| p.re)
     }
 
     #[cold]
     fn slope_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
-        configuration_slope(self, t, q, v)
+        mapped(&configuration_slope(self, Dual::fixed(t), &mapped(q, Dual::fixed), &mapped(v, Dual::fixed)), |f| f.re)
     }
 
     #[cold]

@@ -1,6 +1,6 @@
 use super::Mechanics;
 use crate::PiecewiseMechanics;
-use lagrangian::{Gradients, Reduced, Seeded, SeededMember, System, Unparametrised, velocity_of};
+use lagrangian::{Called, Gradients, Reduced, Seeded, SeededMember, System, Unparametrised, velocity_of};
 
 /// The questions about a system whose motion is differentiated: the same answers with derivatives in eight directions.
 ///
@@ -42,11 +42,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> SeededMechanics<N, M> fo
     }
 
     fn velocity_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
-        velocity_of(self, t, q, xi).ok()
+        velocity_of(self, Called(t), &Called::all(q), &Called::all(xi)).ok().map(|v| Called::plain(&v))
     }
 
     fn reduced_motion_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
-        System::reduced(self).reduced_motion(t, q, xi)
+        let motion = System::reduced(self).reduced_motion(Called(t), &Called::all(q), &Called::all(xi))?;
+        Some(Called::plain(&motion))
     }
 }
 

@@ -10,13 +10,11 @@ mod instructions;
 mod pack;
 mod packed;
 mod sincos;
-mod square;
 mod wide;
 
 pub use four::{Four, FourKernel, in_fours, in_plain_fours};
 pub use instructions::Simd;
-pub use pack::Pack;
-pub use square::Square;
+pub use pack::{Pack, Square};
 pub use wide::{Wide, each, packed};
 
 /// Something to compute on packs of eight numbers.

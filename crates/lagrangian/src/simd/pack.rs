@@ -1,4 +1,5 @@
 use super::Simd;
+use crate::from_fn;
 use pulp::bytemuck;
 
 /// Eight numbers in `R` registers.
@@ -157,7 +158,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         self.simd.reduce_max_f64s(most)
     }
 
-    /// The product of a [`Square`](super::Square), its terms loaded, with this vector.
+    /// The product of a [`Square`], its terms loaded, with this vector.
     #[must_use]
     #[inline(always)]
     pub fn times(&self, terms: &[Self; 8]) -> Self {
@@ -249,5 +250,23 @@ impl<S: Simd, const R: usize> std::ops::Neg for Pack<S, R> {
             #[inline(always)]
             |s, x| s.neg_f64s(x),
         )
+    }
+}
+
+/// A square matrix of eight rows, in the order in which its product with a vector in registers takes it.
+///
+/// To broadcast one lane of a register is slow, to permute its lanes is not. So term `d` has, in row `i`, the coefficient of the number
+/// that the permutation by the bits of `d` brings there, the one at `i xor d`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Square {
+    /// The terms.
+    pub terms: [[f64; 8]; 8],
+}
+
+impl Square {
+    /// The matrix with these columns.
+    #[must_use]
+    pub fn of_columns(columns: &[[f64; 8]; 8]) -> Self {
+        Self { terms: from_fn(|term| from_fn(|i| columns[i ^ term][i])) }
     }
 }
