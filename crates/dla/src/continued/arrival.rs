@@ -37,16 +37,15 @@ impl<D> Dla<D> {
         if size > large {
             return None;
         }
-        // A light coordinate answers to impulses as large as its mass is small, and what their rounding leaves of the constraint is as large.
-        if !constraint_holds(&here.a1, &here.b1, &v) {
-            return None;
-        }
-        if mass.suffice(size, large) {
+        // Rounding of a large impulse in a light coordinate, or of a large velocity in rows that look at small ones, is more than the rounding
+        // of the terms of the constraint: a second correction removes it.
+        let holds = constraint_holds(&here.a1, &here.b1, &v);
+        if holds && mass.suffice(size, large) {
             self.kept.mass.go_unseen();
             return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: 1 });
         }
         let p = system.momentum(t1, q1, &v);
-        if here.is_met(&p, &minus_mu) {
+        if holds && here.is_met(&p, &minus_mu) {
             self.kept.mass.have_sufficed(size, large, || true);
             return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: LEAST });
         }
@@ -100,7 +99,7 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
                     Some(p) => self.correction(v, &p),
                     None => {
                         let p = self.system.momentum(self.t1, &self.q1, v);
-                        if self.is_met(&p, &minus_mu) {
+                        if self.is_met(&p, &minus_mu) && constraint_holds(&self.a1, &self.b1, v) {
                             return None;
                         }
                         self.correction(v, &p)
