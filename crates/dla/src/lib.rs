@@ -50,12 +50,10 @@ mod resolved;
 mod run;
 mod runaway;
 mod sensitivity;
-mod settle;
 mod stack;
 mod start;
 mod state;
 mod suspect;
-mod unknowns;
 
 pub use crate::dla::{Dla, Form};
 pub use assembly_fault::{AssemblyFault, ConstraintRow, DependentRows};

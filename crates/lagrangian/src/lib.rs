@@ -57,8 +57,8 @@ mod with;
 mod with_basis;
 
 pub use along::acceleration_along;
-pub use basis::{AdmissibleBasis, linear_basis};
-pub use bordered::{Bordered, clear_multipliers};
+pub use basis::AdmissibleBasis;
+pub use bordered::Bordered;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use by_hand::{Reduced, StageEvaluation};
 pub use called::Called;

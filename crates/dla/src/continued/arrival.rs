@@ -1,8 +1,11 @@
-use super::{FoundMean, are_met, constraint_holds};
-use crate::Mechanics;
-use crate::derivatives::StepDerivatives;
+use super::{FoundMean, are_met, constraint_holds, searched, sup};
+use crate::convergence::CorrectionKind;
+use crate::derivatives::{LEAST, StepDerivatives};
 use crate::dla::Dla;
-use crate::settle::{LEAST, Settle, sup};
+use crate::newton::BlockEquations;
+use crate::projection::Projection;
+use crate::{Equations, Mechanics};
+use lagrangian::linear::Singular;
 use lagrangian::{Bordered, from_fn, mapped};
 
 impl<D> Dla<D> {
@@ -29,30 +32,24 @@ impl<D> Dla<D> {
             &a1,
             &a1,
         )?;
-        let here = Here { system, t1, q1: *q1, p1, a1, b1, mass, bordered, tolerance: self.newton.tolerance };
+        let (tolerance, minus_mu) = (self.newton.tolerance, [0.0; M]);
+        let (first, known) = (None, None);
+        let mut here =
+            Here { system, t1, q1: *q1, p1, a1, b1, mass, bordered, tolerance, first, known, minus_mu, met: false };
 
-        let (d, minus_mu) = here.correction(&guess, &p);
+        let (d, minus_mu) = here.corrected(&guess, &p);
         let v = from_fn(|i| guess[i] + d[i]);
-        let (size, large) = (sup(&d), sup(&guess));
-        if size > large {
+        if sup(&d) > sup(&guess) {
             return None;
         }
-        // Rounding of a large impulse in a light coordinate, or of a large velocity in rows that look at small ones, is more than the rounding
-        // of the terms of the constraint: a second correction removes it.
-        let holds = constraint_holds(&here.a1, &here.b1, &v);
-        if holds && mass.suffice(size, large) {
-            self.kept.mass.go_unseen();
-            return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: 1 });
-        }
         let p = system.momentum(t1, q1, &v);
-        if holds && here.is_met(&p, &minus_mu) {
-            self.kept.mass.have_sufficed(size, large, || true);
+        if here.is_solution(&v, &p, &minus_mu) {
             return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: LEAST });
         }
+        (here.first, here.known, here.minus_mu) = (Some(d), Some(p), minus_mu);
         // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
         // which the call leaves its result.
-        let FoundMean { v, lambda, corrections } = here.settled(v, p, d)?;
-        self.kept.mass.have_not_sufficed();
+        let FoundMean { v, lambda, corrections } = here.solved(guess)?;
         Some(FoundMean { v, lambda, corrections })
     }
 }
@@ -68,49 +65,74 @@ struct Here<'a, const N: usize, const M: usize> {
     mass: &'a StepDerivatives,
     bordered: Bordered<N, M>,
     tolerance: f64,
+    /// The first correction, and the momenta after it, before they are asked for.
+    first: Option<[f64; N]>,
+    known: Option<[f64; N]>,
+    /// `-mu`, solved for with the last correction.
+    minus_mu: [f64; M],
+    met: bool,
 }
 
 impl<const N: usize, const M: usize> Here<'_, N, M> {
     /// The correction of a velocity `v` that has the momenta `p`, and `-mu`.
     #[inline(always)]
-    fn correction(&self, v: &[f64; N], p: &[f64; N]) -> ([f64; N], [f64; M]) {
+    fn corrected(&self, v: &[f64; N], p: &[f64; N]) -> ([f64; N], [f64; M]) {
         let Self { p1, a1, b1, mass, bordered, .. } = self;
         let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i]));
         bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip)
     }
 
-    /// Whether a velocity that has the momenta `p`, and meets the constraint, is the solution with `mu`.
+    /// Whether the velocity `v`, which has the momenta `p`, is the solution with `mu`. Rounding of a large impulse in a light coordinate, or
+    /// of a large velocity in rows that look at small ones, is more than the rounding of the terms of the constraint; another correction
+    /// removes it.
     #[inline(always)]
-    fn is_met(&self, p: &[f64; N], minus_mu: &[f64; M]) -> bool {
-        are_met(&from_fn(|i| p[i] - self.p1[i]), &self.a1, minus_mu, &self.p1, self.tolerance)
+    fn is_solution(&self, v: &[f64; N], p: &[f64; N], minus_mu: &[f64; M]) -> bool {
+        constraint_holds(&self.a1, &self.b1, v)
+            && are_met(&from_fn(|i| p[i] - self.p1[i]), &self.a1, minus_mu, &self.p1, self.tolerance)
     }
 
-    /// Iterates to convergence, after the correction `d` to `v`, which has the momenta `p`. Takes `self` by value, so that nothing of it
-    /// must be in memory if the first correction is enough.
+    /// Iterates to convergence from the guess `v`. Takes `self` by value, so that nothing of it must be in memory if the first correction
+    /// is enough.
     #[inline(never)]
-    fn settled(self, mut v: [f64; N], p: [f64; N], d: [f64; N]) -> Option<FoundMean<N, M>> {
-        let (mut known, mut minus_mu) = (Some(p), [0.0; M]);
-        let corrections = Settle { tolerance: self.tolerance, first: d }.search(
-            &mut v,
-            #[inline(always)]
-            |v| {
-                let d;
-                (d, minus_mu) = match known.take() {
-                    Some(p) => self.correction(v, &p),
-                    None => {
-                        let p = self.system.momentum(self.t1, &self.q1, v);
-                        if self.is_met(&p, &minus_mu) && constraint_holds(&self.a1, &self.b1, v) {
-                            return None;
-                        }
-                        self.correction(v, &p)
-                    }
-                };
-                Some(d)
-            },
-        )?;
-        if !constraint_holds(&self.a1, &self.b1, &v) {
-            return None;
+    fn solved(mut self, v: [f64; N]) -> Option<FoundMean<N, M>> {
+        let mut all = [v];
+        let corrections = searched(self.tolerance, &mut self, &mut all)?;
+        let [v] = all;
+        constraint_holds(&self.a1, &self.b1, &v).then(|| FoundMean {
+            v,
+            lambda: mapped(&self.minus_mu, |m| -m),
+            corrections,
+        })
+    }
+}
+
+impl<const N: usize, const M: usize> BlockEquations<N, 1> for Here<'_, N, M> {
+    #[inline(always)]
+    fn correction(&mut self, [v]: &[[f64; N]; 1]) -> Result<[[f64; N]; 1], Singular> {
+        if let Some(d) = self.first.take() {
+            return Ok([d]);
         }
-        Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections })
+        let p = self.known.take().unwrap_or_else(|| self.system.momentum(self.t1, &self.q1, v));
+        self.met = self.is_solution(v, &p, &self.minus_mu);
+        if self.met {
+            return Ok([[0.0; N]]);
+        }
+        let (d, minus_mu) = self.corrected(v, &p);
+        self.minus_mu = minus_mu;
+        Ok([d])
+    }
+
+    fn roundings(&self, [v]: &[[f64; N]; 1]) -> Option<f64> {
+        Projection::new(self.system, self.t1, self.q1, self.p1, None).roundings(v)
+    }
+
+    #[inline(always)]
+    fn kind(&self) -> CorrectionKind {
+        CorrectionKind::Frozen
+    }
+
+    #[inline(always)]
+    fn is_met(&self) -> bool {
+        self.met
     }
 }

@@ -1,11 +1,13 @@
-use super::{FoundMean, are_met, ends, with_reaction};
+use super::{FoundMean, are_met, ends, searched, sup, with_reaction};
+use crate::convergence::CorrectionKind;
 use crate::convergence::tolerances::SHRINKING;
-use crate::derivatives::StepDerivatives;
+use crate::derivatives::{LEAST, StepDerivatives};
 use crate::dla::{Dla, expected, predicted};
 use crate::increment::{Departure, Increment};
-use crate::settle::{LEAST, Settle, sup};
+use crate::newton::BlockEquations;
 use crate::{Discretisation, Mechanics, State};
-use lagrangian::{Bordered, from_fn};
+use lagrangian::linear::Singular;
+use lagrangian::{Bordered, Rounded, from_fn, mapped};
 
 /// The square of a correction that is smaller, relative to the velocity, is below round-off.
 const SMALL: f64 = 1e-9;
@@ -53,78 +55,111 @@ impl<D> Dla<D> {
         if size > SHRINKING * large {
             return None;
         }
-        if block.suffice(size, large) {
-            self.kept.block.go_unseen();
-            return Some((FoundMean { v: moved, lambda, corrections: 1 }, with_reaction(ends(&at), &a0, &lambda)));
-        }
         let (first, at, tolerance) = (at, increment.momenta(&moved), self.newton.tolerance);
         if size <= SMALL * large && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
-            let both = ends(&at);
-            // Each of the sums has two roundings.
-            let same = || sup(&difference(&both, &ends(&first))) <= 2.0 * f64::EPSILON * sup(&both);
-            self.kept.block.have_sufficed(size, large, same);
-            return Some((FoundMean { v: moved, lambda, corrections: LEAST }, with_reaction(both, &a0, &lambda)));
+            return Some((FoundMean { v: moved, lambda, corrections: LEAST }, with_reaction(ends(&at), &a0, &lambda)));
         }
-        let begun = Begun { increment, block, bordered, tolerance, v: moved, d, lambda, first, at };
+        let both = ends(&first);
+        let begun = Predicted {
+            increment,
+            block,
+            bordered,
+            tolerance,
+            first: Some(d),
+            lambda,
+            both,
+            known: Some(at),
+            size,
+            before: 0.0,
+            moved: 0.0,
+            change: 0.0,
+            met: false,
+        };
         // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
         // which the call leaves its result.
-        let (FoundMean { v, lambda, corrections }, p1) = begun.settled()?;
-        self.kept.block.have_not_sufficed();
+        let (FoundMean { v, lambda, corrections }, p1) = begun.solved(v)?;
         Some((FoundMean { v, lambda, corrections }, p1))
     }
 }
 
-/// The iteration after its first correction.
-struct Begun<'a, D, const N: usize, const M: usize> {
+/// The equations of the mean velocity with a frozen Jacobian, of which the first correction is known.
+struct Predicted<'a, D, const N: usize, const M: usize> {
     increment: Increment<'a, D, N, M>,
     block: &'a StepDerivatives,
     bordered: Bordered<N, M>,
     tolerance: f64,
-    v: [f64; N],
-    /// The first correction, the impulse that was solved for with it, and the momenta from which it was made.
-    d: [f64; N],
+    /// The first correction, before it is asked for.
+    first: Option<[f64; N]>,
+    /// The impulse that was solved for with the last correction.
     lambda: [f64; M],
-    first: Departure<N>,
-    /// The momenta at `v`.
-    at: Departure<N>,
+    /// The sums of the momenta of both ends at the last point, and how much they changed from the point before.
+    both: [f64; N],
+    change: f64,
+    /// The momenta after the first correction.
+    known: Option<Departure<N>>,
+    /// The sizes of the last two corrections, and of all before the last together.
+    size: f64,
+    before: f64,
+    moved: f64,
+    met: bool,
 }
 
-impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M> {
-    /// Iterates to convergence. Takes `self` by value, so that nothing of it must be in memory if the first correction is enough.
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> BlockEquations<N, 1> for Predicted<'_, D, N, M> {
+    #[inline(always)]
+    fn correction(&mut self, [v]: &[[f64; N]; 1]) -> Result<[[f64; N]; 1], Singular> {
+        if let Some(d) = self.first.take() {
+            return Ok([d]);
+        }
+        self.moved += self.size;
+        let Increment { a0, p0, .. } = &self.increment;
+        let at = self.known.take().unwrap_or_else(|| self.increment.momenta(v));
+        let sums = ends(&at);
+        self.change = sup(&difference(&sums, &self.both));
+        self.both = sums;
+        // After a correction the constraint is met up to its product with the distance from the place of its rows.
+        let holds = self.moved * self.size <= (SMALL * sup(v)).powi(2);
+        self.met = holds && are_met(&at.residual, a0, &self.lambda, p0, self.tolerance);
+        if self.met {
+            self.change = 0.0;
+            return Ok([[0.0; N]]);
+        }
+        let level = if holds { [0.0; M] } else { self.increment.level(v) };
+        let (d, lambda) = self.bordered.solve(&self.block.times(&negative(&at.residual)), &level);
+        (self.lambda, self.before, self.size) = (lambda, self.size, sup(&d));
+        Ok([d])
+    }
+
+    fn roundings(&self, [v]: &[[f64; N]; 1]) -> Option<f64> {
+        Some(self.increment.roundings(&mapped(v, Rounded::once), None))
+    }
+
+    #[inline(always)]
+    fn kind(&self) -> CorrectionKind {
+        CorrectionKind::Frozen
+    }
+
+    #[inline(always)]
+    fn is_met(&self) -> bool {
+        self.met
+    }
+}
+
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Predicted<'_, D, N, M> {
+    /// Iterates to convergence from the predictor `v`. Takes `self` by value, so that nothing of it must be in memory if the first
+    /// correction is enough.
     #[inline(never)]
-    fn settled(self) -> Option<(FoundMean<N, M>, [f64; N])> {
-        let Self { increment, block, bordered, tolerance, mut v, d, mut lambda, first, at } = self;
-        let Increment { a0, p0, .. } = increment;
-        let (mut both, mut size, mut known) = (ends(&first), sup(&d), Some(at));
-        let (mut change, mut before, mut moved) = (0.0, 0.0, size);
-        let corrections = Settle { tolerance, first: d }.search(
-            &mut v,
-            #[inline(always)]
-            |v| {
-                let at = known.take().unwrap_or_else(|| increment.momenta(v));
-                let sums = ends(&at);
-                change = sup(&difference(&sums, &both));
-                both = sums;
-                // After a correction the constraint is met up to its product with the distance from the place of its rows.
-                let met = moved * size <= (SMALL * sup(v)).powi(2);
-                if met && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
-                    change = 0.0;
-                    return None;
-                }
-                let level = if met { [0.0; M] } else { increment.level(v) };
-                let d;
-                (d, lambda) = bordered.solve(&block.times(&negative(&at.residual)), &level);
-                (before, size) = (size, sup(&d));
-                moved += size;
-                Some(d)
-            },
-        )?;
+    fn solved(mut self, v: [f64; N]) -> Option<(FoundMean<N, M>, [f64; N])> {
+        let mut all = [v];
+        let corrections = searched(self.tolerance, &mut self, &mut all)?;
+        let [v] = all;
         // If the equations at `v` are met, the momenta at the end are the sum of the momenta of both ends and the reaction. The last
         // correction changes that sum in proportion to its size, as the one before did.
-        if change * size > f64::EPSILON * before * sup(&both) {
-            both = ends(&increment.momenta(&v));
-        }
-        Some((FoundMean { v, lambda, corrections }, with_reaction(both, &a0, &lambda)))
+        let both = match self.change * self.size > f64::EPSILON * self.before * sup(&self.both) {
+            true => ends(&self.increment.momenta(&v)),
+            false => self.both,
+        };
+        let lambda = self.lambda;
+        Some((FoundMean { v, lambda, corrections }, with_reaction(both, &self.increment.a0, &lambda)))
     }
 }
 

@@ -152,9 +152,6 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// near a configuration only; [`System::near`](lagrangian::System::near) explains `basis`. Returns whether they do.
     fn near(&self, t: f64, q: &[f64; N], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanics<N, M>)) -> bool;
 
-    /// The rows of linear constraints with the basis; `None` if the system gives no basis, or if `b` is not zero.
-    fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
-
     /// Accelerations and multipliers of the continuous system.
     ///
     /// # Errors
