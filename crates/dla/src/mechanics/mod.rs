@@ -1,9 +1,17 @@
 //! The questions that a method asks of a system.
 
 mod automatic;
+pub(crate) mod dependent;
 mod diagnosis;
+pub(crate) mod dropping;
+pub(crate) mod known_angle;
+pub(crate) mod not_a_number;
+pub(crate) mod power;
+pub(crate) mod reduced_field;
 mod rounded;
 mod seeded;
+pub(crate) mod start;
+pub(crate) mod suspect;
 
 pub use diagnosis::Diagnosis;
 pub use rounded::RoundedMechanics;

@@ -1,3 +1,13 @@
+pub(crate) mod continued;
+pub(crate) mod corrections;
+pub(crate) mod derivatives;
+pub(crate) mod discrete_lagrangian;
+pub(crate) mod discretisation;
+pub(crate) mod increment;
+pub(crate) mod kept;
+pub(crate) mod mean;
+pub(crate) mod past;
+
 use crate::branch::tells_turn;
 use crate::continued::sup;
 use crate::dependent::{named_at, rows_left_out};
