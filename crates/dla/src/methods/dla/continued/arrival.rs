@@ -1,4 +1,4 @@
-use super::{FoundMean, are_met, constraint_holds, searched, sup};
+use super::{FoundMean, are_met, constraint_holds, searched, sup, with_reaction};
 use crate::convergence::CorrectionKind;
 use crate::derivatives::{LEAST, StepDerivatives};
 use crate::dla::Dla;
@@ -82,9 +82,8 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
         bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip)
     }
 
-    /// Whether the velocity `v`, which has the momenta `p`, is the solution with `mu`. Rounding of a large impulse in a light coordinate, or
-    /// of a large velocity in rows that look at small ones, is more than the rounding of the terms of the constraint; another correction
-    /// removes it.
+    /// Whether the velocity `v`, which has the momenta `p`, is the solution with `mu`. The rounding of a large reaction may be more than the
+    /// rounding of the terms of a constraint on small velocities: a second correction, made without the reaction that is known, removes it.
     #[inline(always)]
     fn is_solution(&self, v: &[f64; N], p: &[f64; N], minus_mu: &[f64; M]) -> bool {
         constraint_holds(&self.a1, &self.b1, v)
@@ -117,8 +116,8 @@ impl<const N: usize, const M: usize> BlockEquations<N, 1> for Here<'_, N, M> {
         if self.met {
             return Ok([[0.0; N]]);
         }
-        let (d, minus_mu) = self.corrected(v, &p);
-        self.minus_mu = minus_mu;
+        let (d, more) = self.corrected(v, &with_reaction(p, &self.a1, &self.minus_mu));
+        self.minus_mu = from_fn(|k| self.minus_mu[k] + more[k]);
         Ok([d])
     }
 

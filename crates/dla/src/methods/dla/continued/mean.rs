@@ -124,8 +124,10 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> BlockEquations<N, 
             return Ok([[0.0; N]]);
         }
         let level = if holds { [0.0; M] } else { self.increment.level(v) };
-        let (d, lambda) = self.bordered.solve(&self.block.times(&negative(&at.residual)), &level);
-        (self.lambda, self.before, self.size) = (lambda, self.size, sup(&d));
+        let left = with_reaction(at.residual, a0, &self.lambda);
+        let (d, more) = self.bordered.solve(&self.block.times(&negative(&left)), &level);
+        self.lambda = from_fn(|k| self.lambda[k] + more[k]);
+        (self.before, self.size) = (self.size, sup(&d));
         Ok([d])
     }
 

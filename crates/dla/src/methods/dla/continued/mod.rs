@@ -243,6 +243,40 @@ mod tests {
         }
     }
 
+    /// A heavy body that moves fast, and a small part of its velocity that a constraint sets.
+    #[derive(Clone, Copy)]
+    struct Leaning;
+
+    impl System<3, 1> for Leaning {
+        fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+            let heavy = v[0] * v[0] * 47.0 + v[0] * v[1] * 31.0 + v[1] * v[1] * 45.0 + v[1] * v[2] * 0.3;
+            heavy + v[2] * v[2] * 0.5 - q[2] * q[2] * 0.5 - q[1] * (90.0 * 9.81)
+        }
+        fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+            ([[S::zero(), S::constant(1.0), q[2].sin() * -1e-4]], [S::zero()])
+        }
+    }
+
+    /// The rounding of the reaction to its weight is more than the rounding of the terms of its constraint.
+    #[test]
+    fn a_constraint_on_small_velocities_beside_large_reactions_holds() {
+        let (mut method, mut count) = (method(), 0);
+        let mut state = State::new([0.0, 0.0, 0.1], [5.0, 1e-4 * 0.1_f64.sin() * 0.3, 0.3], [false; 3]);
+        for k in 0..200 {
+            let t = f64::from(k) * STEP;
+            match method.continued_step::<3, 1>(&Leaning, t, STEP, &mut state) {
+                Some(_) => count += 1,
+                None => {
+                    method.step(&Leaning, t, STEP, &mut state).unwrap();
+                }
+            }
+            let ([[_, a, b]], _) = System::constraint(&Leaning, t, state.q());
+            let terms = [a * state.v()[1], b * state.v()[2]];
+            assert!((terms[0] + terms[1]).abs() <= 64.0 * f64::EPSILON * (terms[0].abs() + terms[1].abs()));
+        }
+        assert!(count > 190, "{count} predicted steps");
+    }
+
     /// A run is the same to the last bit, whatever its method was used for before.
     #[test]
     fn another_run_begins_anew() {
