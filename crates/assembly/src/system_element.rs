@@ -94,7 +94,7 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
             out.block.copy_from_slice(block.as_flattened());
             (momenta, rules().rows(system, step, &q0, &v))
         } else {
-            (rules().momenta(system, step, &q0, &v, &v), rules().residual(system, step, &q0, &v).map(Dual::fixed))
+            (rules().momenta(system, step, &q0, &v), rules().residual(system, step, &q0, &v).map(Dual::fixed))
         };
         out.momentum.copy_from_slice(&with_forces(momenta)[0]);
         // Where it constrains positions, in place of the discrete constraint.
@@ -113,7 +113,7 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
 
     fn end(&self, step: (f64, f64), q0: &[f64], v: &[f64], p1: &mut [f64]) {
         let (q0, v) = (local(q0), local(v));
-        p1.copy_from_slice(&with_forces(rules().momenta(&*self.system, step, &q0, &v, &v))[1]);
+        p1.copy_from_slice(&with_forces(rules().momenta(&*self.system, step, &q0, &v))[1]);
     }
 
     fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {

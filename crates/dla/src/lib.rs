@@ -8,54 +8,23 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
-mod assembly_fault;
-mod baseline;
-mod branch;
-mod closed_step_error;
-mod composition;
-mod continued;
-pub mod convergence;
-mod corrections;
-mod dependent;
-mod derivatives;
-mod discrete_lagrangian;
-mod discretisation;
-mod dla;
-mod dropping;
-mod energy;
-mod gauss;
-mod gni;
-mod hermite;
-mod hint;
-mod history;
-mod increment;
-mod kept;
-mod known_angle;
-mod lobatto;
-mod mean;
 mod mechanics;
 mod method;
-mod newton;
-mod not_a_number;
-mod one_step;
-mod overshoot;
-mod past;
-mod positions;
-mod power;
-mod projection;
-mod rebased;
-mod reduced_field;
-mod reduced_flow;
-mod resolved;
+mod methods;
 mod run;
-mod runaway;
 mod sensitivity;
-mod settle;
-mod stack;
-mod start;
-mod state;
-mod suspect;
-mod unknowns;
+mod solve;
+mod step;
+
+pub use solve::convergence;
+
+use mechanics::{dependent, dropping, known_angle, not_a_number, power, reduced_field, start, suspect};
+use methods::dla::{
+    continued, corrections, derivatives, discrete_lagrangian, discretisation, increment, kept, mean, past,
+};
+use methods::{baseline, composition, dla, energy, gauss, gni, hermite, lobatto, rebased, reduced_flow};
+use solve::{branch, history, newton, overshoot, positions, projection};
+use step::{assembly_fault, closed_step_error, hint, one_step, resolved, runaway, stack, state};
 
 pub use crate::dla::{Dla, Form};
 pub use assembly_fault::{AssemblyFault, ConstraintRow, DependentRows};

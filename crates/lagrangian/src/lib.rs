@@ -16,7 +16,7 @@ mod system;
 
 pub use equations::*;
 pub use geometry::*;
-pub use linear::{Bordered, Dependence, FactoredSaddle, Pivots, RowSpace, Rows, Saddle, clear_multipliers};
+pub use linear::{Bordered, Dependence, FactoredSaddle, Pivots, RowSpace, Rows, Saddle};
 pub use numbers::*;
 pub use quadrature::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Trapezoid};
 pub use scalar::{

@@ -290,12 +290,6 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
         System::near(&self.0, t, q, basis).map(|(near, number)| then(number, &Self(near))).is_some()
     }
 
-    fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)> {
-        let (a, b) = self.0.constraint_at(&[], t, q);
-        let linear = b.iter().all(|b| b.abs() <= 0.0);
-        linear.then(|| (a, self.0.basis_of(&[], t, q, || a)))
-    }
-
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError> {
         // Along the motion at frozen velocity, `(t', q', v') = (1, v, 0)`.
         let along_t = Dual { re: t, eps: [1.0] };

@@ -7,8 +7,8 @@ use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
     PowerSources, ReducedError, ReducedSlope, Smoothness, System, add_position_curvature, add_reaction_curvature,
     constraint_residual, energy, energy_slope, force_power, from_fn, gradient_in_velocity, gradients,
-    inverse_reduced_mass, lagrangian_power, linear_basis, mass_matrix, momentum, position_misses, quasi_velocities,
-    reaction_rows, reduced_slope, residual_along, rows_along, second_along, vectorized, velocity_of,
+    inverse_reduced_mass, lagrangian_power, mass_matrix, momentum, position_misses, quasi_velocities, reaction_rows,
+    reduced_slope, residual_along, rows_along, second_along, vectorized, velocity_of,
 };
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys {
@@ -156,10 +156,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
             }
             None => false,
         }
-    }
-
-    fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)> {
-        linear_basis(self, t, q)
     }
 
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError> {

@@ -1,9 +1,17 @@
 //! The questions that a method asks of a system.
 
 mod automatic;
+pub(crate) mod dependent;
 mod diagnosis;
+pub(crate) mod dropping;
+pub(crate) mod known_angle;
+pub(crate) mod not_a_number;
+pub(crate) mod power;
+pub(crate) mod reduced_field;
 mod rounded;
 mod seeded;
+pub(crate) mod start;
+pub(crate) mod suspect;
 
 pub use diagnosis::Diagnosis;
 pub use rounded::RoundedMechanics;
@@ -151,9 +159,6 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// Shows the system with its basis for the neighbourhood of a configuration, and the number of that basis, if bases of the system hold
     /// near a configuration only; [`System::near`](lagrangian::System::near) explains `basis`. Returns whether they do.
     fn near(&self, t: f64, q: &[f64; N], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanics<N, M>)) -> bool;
-
-    /// The rows of linear constraints with the basis; `None` if the system gives no basis, or if `b` is not zero.
-    fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
 
     /// Accelerations and multipliers of the continuous system.
     ///

@@ -87,7 +87,6 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         0 position_misses(t: f64, q: &[f64; N]) -> Option<[Option<Dual<f64, N>>; M]>;
         0 add_position_curvature(t: f64, q: &[f64; N], factors: &[f64; M], matrix: &mut [[f64; N]; N]);
         0 basis(t: f64, q: &[f64; N]) -> Option<AdmissibleBasis<f64, N, M>>;
-        1 linear_basis(t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
         3 motion(t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError>;
         1 velocity_of(t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<[f64; N], ReducedError>;
         1 quasi_velocities(t: f64, q: &[f64; N], v: &[f64; N]) -> Result<[f64; N], ReducedError>;

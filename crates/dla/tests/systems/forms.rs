@@ -21,7 +21,7 @@ fn check<Sys: System<N, M>, const N: usize, const M: usize>(
         let report = method.solved(form).step(system, t, h, &mut state).unwrap();
         (state, report)
     });
-    let start_slopes = method.rules.momenta(system, (t, h), &q0, &v0, &v0).slopes;
+    let start_slopes = method.rules.momenta(system, (t, h), &q0, &v0).slopes;
     for (state, report) in [basis, multipliers] {
         let (q1, v1) = (*state.q(), *state.v());
         // A few roundings of terms below 10.
@@ -32,7 +32,7 @@ fn check<Sys: System<N, M>, const N: usize, const M: usize>(
         let w = method.rules.residual(system, (t, h), &q0, &v);
         prop_assert!(w.iter().all(|w| w.abs() <= 1e-12), "pair {w:?}");
         // The impulses are those that move the momentum: p1 - p0 = D1 + D2 + f + A0' lambda + A1' mu.
-        let ends = method.rules.momenta(system, (t, h), &q0, &v, &v);
+        let ends = method.rules.momenta(system, (t, h), &q0, &v);
         let ([d1, d2], [minus, plus]) = (ends.slopes, ends.forces.unwrap_or([[0.0; N]; 2]));
         let (p0, p1) = (momentum(system, t, &q0, &v0), momentum(system, t + h, &q1, &v1));
         let (a0, a1) = (system.constraint(t, &q0).0, system.constraint(t + h, &q1).0);

@@ -82,7 +82,7 @@ fn check<Sys: System<3, 1>>(
     let rounding = 1e-14 / h;
     prop_assert!(method.rules.residual(system, (0.0, h), &q0, &v)[0].abs() <= rounding);
     prop_assert!(constraint_residual(system, h, &q1, state.v())[0].abs() <= 1e-14);
-    let [d1, d2] = method.rules.momenta(system, (0.0, h), &q0, &v, &v).slopes;
+    let [d1, d2] = method.rules.momenta(system, (0.0, h), &q0, &v).slopes;
     let (p0, p1) = (momentum(system, 0.0, &q0, &v0), momentum(system, h, &q1, state.v()));
     let (a0, a1) = (system.constraint(0.0, &q0).0, system.constraint(h, &q1).0);
     let size = 1.0 + d1.iter().chain(&d2).fold(0.0f64, |m, x| m.max(x.abs()));

@@ -296,16 +296,6 @@ pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f
     Ok(lambda)
 }
 
-/// The least-squares solution `lambda` of `A' lambda = b`, `A` given by its `M` rows, where the elimination of up to three rows loses
-/// no more than three digits; for more rows that is not checked.
-#[must_use]
-#[inline(always)]
-pub fn clear_multipliers<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f64; N]) -> Option<[f64; M]> {
-    let gram = from_fn(|k| from_fn(|l| dot(&rows[k], &rows[l])));
-    let inverse = Inverse::clear_above(&gram, dependent(N, M))?;
-    Some(inverse.solve(&from_fn(|k| dot(&rows[k], b))))
-}
-
 /// The product of two vectors.
 #[inline(always)]
 pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {

@@ -6,7 +6,7 @@ mod row_space;
 mod rows;
 mod saddle;
 
-pub use lu::{Inverse, Lu, Singular, clear_multipliers, has_positive_determinant, larger, largest, normal_solve};
+pub use lu::{Inverse, Lu, Singular, has_positive_determinant, larger, largest, normal_solve};
 pub(crate) use lu::{dependent, dot};
 pub use pivots::Pivots;
 pub use row_space::{Dependence, RowSpace};

@@ -1,4 +1,4 @@
-use crate::{Scalar, System};
+use crate::Scalar;
 
 /// A basis `w_1 .. w_(N-M)` of the admissible velocities `ker A(q, t)` at one point.
 ///
@@ -80,19 +80,4 @@ impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
         }
         v
     }
-}
-
-/// The rows of linear constraints, with the basis of the velocities that they admit; none where the system gives none, or where a
-/// constraint has a part without velocities.
-#[must_use]
-#[inline(always)]
-pub fn linear_basis<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t: f64,
-    q: &[f64; N],
-) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)> {
-    let basis = system.admissible_basis(t, q)?;
-    let (a, b) = system.constraint(t, q);
-    let linear = b.iter().fold(true, |all, b| all & (b.abs() <= 0.0));
-    linear.then_some((a, basis))
 }

@@ -9,7 +9,7 @@ mod piecewise;
 mod with;
 mod with_basis;
 
-pub use basis::{AdmissibleBasis, linear_basis};
+pub use basis::AdmissibleBasis;
 pub use by_hand::{Reduced, StageEvaluation};
 pub use effect::{Effect, EffectSlope};
 pub(crate) use effect::{add_all, sum};

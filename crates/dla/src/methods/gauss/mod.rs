@@ -127,7 +127,7 @@ impl Gauss {
             noise: NOISE,
             limit: self.max_iterations,
             hopeless: 2.0,
-            unseen: self.memory.unseen(),
+            untested: self.memory.untested(),
         };
         let q0 = state.q();
         match system.collocate(Collocation { rule, t, h, q0, xi0, before, ending, counts: None, slopes })? {

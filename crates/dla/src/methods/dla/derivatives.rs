@@ -4,11 +4,8 @@ use lagrangian::{from_fn, mul_add};
 /// Larger systems, by coordinates or constraints, have no frozen Jacobian: each of their steps is made without memory.
 pub(crate) const COORDINATES: usize = 12;
 
-/// Maximum number of corrections in a row that are accepted without a check of their residual, and least number of steps with the same
-/// Jacobian before the first one.
-const OFTEN: u32 = 16;
-/// A correction above this fraction of the unknowns is always checked: the predictor was then off by more than round-off.
-const SLIGHT: f64 = 1e-12;
+/// The fewest evaluations of the residual in an iteration: one for the first correction, and one that finds the equations met.
+pub(crate) const LEAST: u32 = 2;
 
 pub(crate) type UnknownsRow = [f64; COORDINATES];
 
@@ -30,10 +27,6 @@ pub(crate) struct StepDerivatives {
     searches: u32,
     /// The number of coming steps in which it is renewed every time.
     own: u32,
-    /// The largest correction, relative to the unknowns, after which a check found a residual of round-off; and the number of corrections
-    /// accepted without a check since.
-    seen: f64,
-    unseen: u32,
 }
 
 impl StepDerivatives {
@@ -45,14 +38,12 @@ impl StepDerivatives {
         more: 0,
         searches: 0,
         own: 0,
-        seen: 0.0,
-        unseen: 0,
     };
 
     /// Takes a new Jacobian, given by rows; `None` if it has no inverse, or an inverse that loses digits.
     #[inline(never)]
     pub(crate) fn renew<const N: usize>(&mut self, matrix: &[[f64; N]; N]) -> Option<()> {
-        /// If more than three digits are lost, the step is made without memory, perhaps in a basis that keeps them.
+        /// If more than three digits are lost, the step is made without memory.
         const CLEAR: f64 = 1e3;
         let inverse = Inverse::new(matrix).ok()?;
         // The diagonal of |K| |K^-1|, whatever the scale of rows and columns. (Skeel 1979, J. ACM 26, 494-526.)
@@ -63,43 +54,14 @@ impl StepDerivatives {
             condition = larger(condition, (0..N).map(|i| (matrix[j][i] * column[i]).abs()).sum());
         }
         self.positive = inverse.is_positive();
-        (self.stale, self.more, self.searches, self.seen) = (false, 0, 0, 0.0);
+        (self.stale, self.more, self.searches) = (false, 0, 0);
         (condition <= CLEAR).then_some(())
     }
 
     /// Forgets the Jacobian.
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
-        (self.stale, self.own, self.seen) = (true, 0, 0.0);
-    }
-
-    /// Whether a correction of the size `d` of unknowns of the size `x` may be accepted without a check, since a check of one as large has
-    /// shown a residual of round-off. The residual after a correction is a part of it that grows with the age of the Jacobian; between
-    /// two checks it does not grow beyond twice. (Rates of contraction are remembered likewise, Hairer and Wanner 1996, IV.8.)
-    #[inline(always)]
-    pub(crate) fn suffice(&self, d: f64, x: f64) -> bool {
-        d <= self.seen * x && self.unseen < OFTEN
-    }
-
-    /// Counts a correction that was accepted without a check.
-    #[inline(always)]
-    pub(crate) fn go_unseen(&mut self) {
-        self.unseen = self.unseen.saturating_add(1);
-    }
-
-    /// Records that a check of a correction of the size `d` of unknowns of the size `x` found round-off, if `sure` confirms it. Older
-    /// records count half at every new one.
-    #[inline(always)]
-    pub(crate) fn have_sufficed(&mut self, d: f64, x: f64, sure: impl FnOnce() -> bool) {
-        if d <= SLIGHT * x && self.searches >= OFTEN && sure() {
-            (self.seen, self.unseen) = (larger(d / x, 0.5 * self.seen), 0);
-        }
-    }
-
-    /// Records that a check found more than round-off.
-    #[inline(always)]
-    pub(crate) fn have_not_sufficed(&mut self) {
-        self.seen = 0.0;
+        (self.stale, self.own) = (true, 0);
     }
 
     /// The product of the inverse with a vector.
@@ -125,34 +87,11 @@ impl StepDerivatives {
         from_fn(|i| sum[i])
     }
 
-    /// The product of the inverse of a matrix that is the unit matrix beyond the first `D` places with a vector that is zero there.
-    #[inline(always)]
-    pub(crate) fn times_first<const N: usize>(&self, d: usize, x: &[f64; N]) -> [f64; N] {
-        let mut sum = [0.0; N];
-        for i in 0..d {
-            sum[i] = (1..d).fold(self.columns[0][i] * x[0], |sum, j| sum + self.columns[j][i] * x[j]);
-        }
-        sum
-    }
-
     /// Records the number of corrections that a step took with it, and marks it stale if the surplus has reached the cost of a new one.
     #[inline(always)]
     pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
         // The cost of a new Jacobian in corrections, about: `(N/3)^3`, one for three coordinates.
         let price = const { (N * N * N).div_ceil(27) as u32 };
-        self.took_at(price, corrections);
-    }
-
-    /// As [`Self::took`], in the basis of admissible velocities: a step there takes one correction more now and then although the Jacobian
-    /// is no older, since the basis itself turns within the step.
-    #[inline(always)]
-    pub(crate) fn took_in_basis<const N: usize>(&mut self, corrections: u32) {
-        let price = const { 8 + (N * N * N).div_ceil(27) as u32 };
-        self.took_at(price, corrections);
-    }
-
-    #[inline(always)]
-    fn took_at(&mut self, price: u32, corrections: u32) {
         /// Number of steps in a row that renew their Jacobian, after already the second step with one reached its cost.
         const OWN: u32 = 16;
         self.searches = self.searches.saturating_add(1);
@@ -171,13 +110,12 @@ impl StepDerivatives {
 
     /// Visits every number of it, in a fixed order.
     pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { columns, positive, stale, least, more, searches, own, seen, unseen } = self;
+        let Self { columns, positive, stale, least, more, searches, own } = self;
         columns.as_flattened_mut().iter_mut().for_each(&mut visit);
         for flag in [positive, stale] {
             switch(flag, &mut visit);
         }
-        visit(seen);
-        for count in [least, more, searches, own, unseen] {
+        for count in [least, more, searches, own] {
             counted(count, &mut visit);
         }
     }
@@ -256,38 +194,6 @@ mod tests {
         assert_eq!(served::<3>(|k| if k < 5 { 2 } else { 3 }), 5);
         // One more in every step, thirteen of which are worth new ones.
         assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
-    }
-
-    /// A correction is accepted without a check if one as large was checked lately, with a Jacobian that is no longer new.
-    #[test]
-    fn what_was_seen_is_believed_for_a_while() {
-        let unit = [[1.0, 0.0], [0.0, 1.0]];
-        let mut derivatives = renewed(&unit);
-        for _ in 0..OFTEN {
-            derivatives.have_sufficed(1e-13, 1.0, || true);
-            assert!(!derivatives.suffice(1e-14, 1.0), "too new");
-            derivatives.took::<2>(2);
-        }
-        derivatives.have_sufficed(1e-13, 1.0, || false);
-        assert!(!derivatives.suffice(1e-14, 1.0), "not sure");
-        derivatives.have_sufficed(2.0 * SLIGHT, 1.0, || true);
-        assert!(!derivatives.suffice(1e-14, 1.0), "too large");
-        derivatives.have_sufficed(2e-13, 2.0, || true);
-        assert!(derivatives.suffice(1e-13, 1.0) && !derivatives.suffice(1.1e-13, 1.0));
-        for _ in 0..OFTEN {
-            assert!(derivatives.suffice(1e-13, 1.0));
-            derivatives.go_unseen();
-        }
-        assert!(!derivatives.suffice(1e-13, 1.0), "for too long");
-        derivatives.have_sufficed(1e-14, 1.0, || true);
-        assert!(derivatives.suffice(0.5e-13, 1.0) && !derivatives.suffice(0.6e-13, 1.0), "half of what it was");
-        for forget in [StepDerivatives::have_not_sufficed, StepDerivatives::forget, |d: &mut StepDerivatives| {
-            d.renew(&[[2.0]]).unwrap();
-        }] {
-            let mut other = derivatives;
-            forget(&mut other);
-            assert!(!other.suffice(1e-14, 1.0));
-        }
     }
 
     /// Where already the second step reaches the cost, sixteen have a Jacobian of their own.

@@ -67,50 +67,58 @@ pub trait OneStep<const N: usize, const M: usize> {
     }
 }
 
-impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, M> for Box<Method> {
-    fn step(
-        &mut self,
-        system: &dyn Mechanics<N, M>,
-        t: f64,
-        h: f64,
-        state: &mut State<N>,
-    ) -> Result<StepReport<M>, StepError> {
-        (**self).step(system, t, h, state)
-    }
+/// A method behind a pointer is that method.
+macro_rules! behind {
+    ($pointer:ty) => {
+        impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, M> for $pointer {
+            fn step(
+                &mut self,
+                system: &dyn Mechanics<N, M>,
+                t: f64,
+                h: f64,
+                state: &mut State<N>,
+            ) -> Result<StepReport<M>, StepError> {
+                (**self).step(system, t, h, state)
+            }
 
-    fn step_until(
-        &mut self,
-        system: &dyn Mechanics<N, M>,
-        step: (f64, f64),
-        state: &mut State<N>,
-        see: &mut OwnStep<'_, N>,
-    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
-        (**self).step_until(system, step, state, see)
-    }
+            fn step_until(
+                &mut self,
+                system: &dyn Mechanics<N, M>,
+                step: (f64, f64),
+                state: &mut State<N>,
+                see: &mut OwnStep<'_, N>,
+            ) -> Result<(StepReport<M>, Option<f64>), StepError> {
+                (**self).step_until(system, step, state, see)
+            }
 
-    fn memory(&self) -> Vec<f64> {
-        (**self).memory()
-    }
+            fn memory(&self) -> Vec<f64> {
+                (**self).memory()
+            }
 
-    fn recall(&mut self, memory: &[f64], state: &State<N>) {
-        (**self).recall(memory, state);
-    }
+            fn recall(&mut self, memory: &[f64], state: &State<N>) {
+                (**self).recall(memory, state);
+            }
 
-    fn measure_work(&mut self, sources: PowerSources) {
-        (**self).measure_work(sources);
-    }
+            fn measure_work(&mut self, sources: PowerSources) {
+                (**self).measure_work(sources);
+            }
 
-    fn own_steps(
-        &self,
-        system: &dyn Mechanics<N, M>,
-        step: (f64, f64),
-        state: &State<N>,
-        memory: &mut Vec<f64>,
-        see: &mut OwnStep<'_, N>,
-    ) -> Result<(), StepError> {
-        (**self).own_steps(system, step, state, memory, see)
-    }
+            fn own_steps(
+                &self,
+                system: &dyn Mechanics<N, M>,
+                step: (f64, f64),
+                state: &State<N>,
+                memory: &mut Vec<f64>,
+                see: &mut OwnStep<'_, N>,
+            ) -> Result<(), StepError> {
+                (**self).own_steps(system, step, state, memory, see)
+            }
+        }
+    };
 }
+
+behind!(Box<Method>);
+behind!(&mut Method);
 
 /// Looks at the end of a step that a method makes of its own, a time (s) and a state.
 pub type OwnStep<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> ControlFlow<()> + 'a;

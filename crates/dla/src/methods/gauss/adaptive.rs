@@ -81,8 +81,8 @@ impl GaussAdaptive {
         let before = memory.rows(state).zip(rule.continued(self.degree, apart));
         let rounding = larger(0.1, 1e-14 / epsilon);
         // A step whose stages converge slowly costs more than two shorter ones.
-        let (limit, hopeless, unseen) = (18, 0.9, memory.unseen());
-        let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, unseen };
+        let (limit, hopeless, untested) = (18, 0.9, memory.untested());
+        let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, untested };
         let stages = Collocation { rule, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
         let (taken, rate, roughness) = match system.collocate(stages) {
             Some(CollocationOutcome::Found(found)) => {

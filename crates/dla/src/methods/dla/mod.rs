@@ -1,11 +1,22 @@
+pub(crate) mod continued;
+pub(crate) mod corrections;
+pub(crate) mod derivatives;
+pub(crate) mod discrete_lagrangian;
+pub(crate) mod discretisation;
+pub(crate) mod increment;
+pub(crate) mod kept;
+pub(crate) mod mean;
+pub(crate) mod past;
+
 use crate::branch::tells_turn;
+use crate::continued::sup;
 use crate::dependent::{named_at, rows_left_out};
 use crate::increment::Increment;
 use crate::kept::Kept;
 use crate::mean::Mean;
 use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
-use crate::settle::sup;
+
 use crate::{Discretisation, Mechanics, Newton, OneStep, Rules, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::{Alpha, Midpoint, NotAWeight, Rule, Trapezoid, from_fn, mapped};
 
@@ -181,13 +192,7 @@ impl<D> Dla<D> {
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
-        let bases = || {
-            let middle = self.rules.basis_along(system, (t0, h), &q0, &v)?;
-            let ((_, start), (_, end)) = system.linear_basis(t0, &q0).zip(system.linear_basis(t1, &q1))?;
-            (!system.constrains_positions(t1, &q1)).then_some([start, middle, end])
-        };
-        let bases = if in_basis && self.kept.wants_basis() { bases() } else { None };
-        self.kept.begins::<N, M>(block.zip(mass), bases, h, (state.q(), &v1), &v);
+        self.kept.begins(block.zip(mass), h, (state.q(), &v1));
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }

@@ -1,5 +1,5 @@
 use super::tolerances::{
-    BLIND, CONTRACTION, GONE, GROWTHS, NEAR_ROUNDINGS, OF_CORRECTION, ROUNDINGS, STALL, UNBIASED, is_slight,
+    BLIND, CONTRACTION, GONE, GROWTHS, NEAR_ROUNDINGS, OF_CORRECTION, ROUNDINGS, SHRINKING, STALL, UNBIASED, is_slight,
 };
 use crate::{History, NewtonError};
 use lagrangian::linear::largest;
@@ -11,9 +11,19 @@ pub enum CorrectionKind {
     Newton,
     /// With the Jacobian of the point before: the first is `d = w d_before^2/2`, and leaves `w d_before d`.
     Simplified,
+    /// As simplified, with the frozen Jacobian of an earlier step, which must be good: an iteration whose corrections do not shrink eightfold
+    /// fails.
+    Frozen,
     /// With the frozen Jacobian of an earlier step: each shrinks by the same factor. Of thousands of components some always shrink a
     /// little by chance; so a component whose correction is round-off beside the largest one counts as converged.
     Chord,
+}
+
+impl CorrectionKind {
+    /// Whether it goes with a Jacobian of another point, and the unknowns are few.
+    fn is_simplified(self) -> bool {
+        matches!(self, Self::Simplified | Self::Frozen)
+    }
 }
 
 /// The settings of the convergence test for a correction.
@@ -154,6 +164,10 @@ impl<'a> Convergence<'a> {
             self.first = step;
         }
         let slight = is_slight(step, size);
+        if kind == CorrectionKind::Frozen && !(slight || step <= SHRINKING * before) {
+            let (correction, before, history) = (step / size, before / size, self.history());
+            return Err(NewtonError::Diverged { iteration, correction, before, history });
+        }
         let contracts = !self.watched || slight || step <= near || step <= CONTRACTION * before;
         let least = if kind == CorrectionKind::Chord { tolerance * size } else { 0.0 };
         let [mut settled, mut stalls] = [true, false];
@@ -163,13 +177,15 @@ impl<'a> Convergence<'a> {
             // A component that moves by round-off stays so.
             self.rounding[i] |= (slight | self.met) & stall;
             let ends = self.rounding[i] || d <= least || is_settled(kind, tolerance, x, d, last);
-            let open = !(ends || (kind == CorrectionKind::Simplified && self.is_gone(i, d)));
+            let open = !(ends || (kind.is_simplified() && self.is_gone(i, d)));
             settled &= !open;
             stalls |= open & stall;
         }
         // If the next correction is predicted to be round-off in all components, components that have not converged never will.
         settled |=
             kind == CorrectionKind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
+        // Whoever goes on after the first correction with a frozen Jacobian has seen that the equations are not met.
+        settled &= kind != CorrectionKind::Frozen || iteration > 1;
         self.watched &= !contracts;
         let stuck = (stalls && step >= STALL * before) || iteration >= limit;
         if !contracts || (stuck && !(settled || slight || self.met)) {
@@ -229,11 +245,11 @@ impl<'a> Convergence<'a> {
 /// Whether a component of the size `x` has converged with its correction `d` after `last`: by that correction, or by the predicted next
 /// one. A correction larger than the component that it leaves brings round-off of its own, and predicts nothing.
 #[inline(always)]
-pub(crate) fn is_settled(kind: CorrectionKind, tolerance: f64, x: f64, d: f64, last: f64) -> bool {
+fn is_settled(kind: CorrectionKind, tolerance: f64, x: f64, d: f64, last: f64) -> bool {
     let shrink = d / last;
     let (next, least) = match kind {
         CorrectionKind::Newton => (d * (shrink * shrink), tolerance),
-        CorrectionKind::Simplified => (d * (2.0 * shrink), tolerance),
+        CorrectionKind::Simplified | CorrectionKind::Frozen => (d * (2.0 * shrink), tolerance),
         CorrectionKind::Chord => (d * shrink, UNBIASED),
     };
     let predicts = last.is_finite() && d <= x;

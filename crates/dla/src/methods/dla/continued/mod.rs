@@ -1,16 +1,15 @@
 //! The predicted step: modified Newton, started at a predictor, with a frozen Jacobian of the momenta and fresh rows of the constraint.
 
 mod arrival;
-mod in_basis;
 mod mean;
 
 use crate::branch;
 use crate::convergence::tolerances::SLIGHT;
 use crate::dla::Dla;
 use crate::increment::Departure;
+use crate::newton::BlockEquations;
 use crate::overshoot::brakes_only;
-use crate::settle::LEAST;
-use crate::{Discretisation, Mechanics, State, StepReport};
+use crate::{Discretisation, Mechanics, Newton, State, StepReport};
 use lagrangian::{from_fn, mapped};
 
 /// The velocity that an iteration has found, the impulse of the constraints, and the number of corrections.
@@ -18,6 +17,30 @@ struct FoundMean<const N: usize, const M: usize> {
     v: [f64; N],
     lambda: [f64; M],
     corrections: u32,
+}
+
+/// Corrects `x` with a frozen Jacobian until it solves the equations; returns the number of evaluations, or `None` if they converge badly.
+#[inline(always)]
+fn searched<const N: usize>(
+    tolerance: f64,
+    equations: &mut impl BlockEquations<N, 1>,
+    x: &mut [[f64; N]; 1],
+) -> Option<u32> {
+    /// After more corrections the step is made without memory.
+    const CORRECTIONS: u32 = 8;
+    let found = Newton { tolerance, max_iterations: CORRECTIONS }.search_blocks(equations, x).ok()?;
+    Some(found.iterations + u32::from(equations.is_met()))
+}
+
+/// The size of the largest component; NaN is passed over.
+#[inline(always)]
+pub(crate) fn sup<const N: usize>(x: &[f64; N]) -> f64 {
+    // A loop, since the compiler does not inline a fold over more than a few.
+    let mut most = 0.0;
+    for x in x {
+        most = if x.abs() > most { x.abs() } else { most };
+    }
+    most
 }
 
 /// Whether a velocity meets `A v + b = 0` to the round-off of its terms and of the corrections that led to it.
@@ -96,10 +119,7 @@ impl<D> Dla<D> {
         if !self.kept.is_ready() {
             return None;
         }
-        let report = match self.kept.is_in_basis() {
-            true => in_basis::going_on(self, system, (t0, h), state),
-            false => going_on(self, system, (t0, h), state),
-        };
+        let report = going_on(self, system, (t0, h), state);
         match report {
             Some(_) => self.kept.succeeds(),
             None => self.kept.fails(),
@@ -154,8 +174,8 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
     let v1 = end.v;
 
     advanced(system, (t0, h), state, &d, (&v, &v1), &q1)?;
-    method.kept.block.took::<N>(corrections.max(LEAST));
-    method.kept.mass.took::<N>(end.corrections.max(LEAST));
+    method.kept.block.took::<N>(corrections);
+    method.kept.mass.took::<N>(end.corrections);
     // `v1` and not the velocity of the state: that has just been stored, and the load would stall on store forwarding.
     method.kept.ended(h, state.q(), &v1);
     Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
@@ -223,38 +243,38 @@ mod tests {
         }
     }
 
-    /// Two oscillators, of which one carries the inertia of the other, and a wheel that the second turns.
+    /// A heavy body that moves fast, and a small part of its velocity that a constraint sets.
     #[derive(Clone, Copy)]
-    struct Linked;
+    struct Leaning;
 
-    impl System<3, 1> for Linked {
+    impl System<3, 1> for Leaning {
         fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
-            let carried = q[0].cos() * 0.3 + 1.0;
-            let kinetic = v[0] * v[0] + v[1] * v[1] * carried + v[2] * v[2];
-            (kinetic - q[0] * q[0] - q[1] * q[1] * 1.7 - q[2] * q[2]) * 0.5
+            let heavy = v[0] * v[0] * 47.0 + v[0] * v[1] * 31.0 + v[1] * v[1] * 45.0 + v[1] * v[2] * 0.3;
+            heavy + v[2] * v[2] * 0.5 - q[2] * q[2] * 0.5 - q[1] * (90.0 * 9.81)
         }
         fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-            ([[S::zero(), -(q[0].sin() + 1.5), S::constant(1.0)]], [S::zero()])
+            ([[S::zero(), S::constant(1.0), q[2].sin() * -1e-4]], [S::zero()])
         }
     }
 
-    /// Most corrections of a smooth motion are accepted without a check, and the motion agrees with steps made without memory.
+    /// The rounding of the reaction to its weight is more than the rounding of the terms of its constraint.
     #[test]
-    fn what_goes_unseen_is_rounding() {
-        let start = State::new([0.4, -0.3, 0.2], [0.1, 0.6, 0.6 * (1.5 + 0.4_f64.sin())], [false; 3]);
-        let (mut used, mut state, mut other, mut unseen) = (method(), start, start, 0);
-        for _ in 0..2000 {
-            unseen += u32::from(used.step(&Linked, 0.0, 0.005, &mut state).unwrap().iterations == 1);
-            method().step(&Linked, 0.0, 0.005, &mut other).unwrap();
+    fn a_constraint_on_small_velocities_beside_large_reactions_holds() {
+        let (mut method, mut count) = (method(), 0);
+        let mut state = State::new([0.0, 0.0, 0.1], [5.0, 1e-4 * 0.1_f64.sin() * 0.3, 0.3], [false; 3]);
+        for k in 0..200 {
+            let t = f64::from(k) * STEP;
+            match method.continued_step::<3, 1>(&Leaning, t, STEP, &mut state) {
+                Some(_) => count += 1,
+                None => {
+                    method.step(&Leaning, t, STEP, &mut state).unwrap();
+                }
+            }
+            let ([[_, a, b]], _) = System::constraint(&Leaning, t, state.q());
+            let terms = [a * state.v()[1], b * state.v()[2]];
+            assert!((terms[0] + terms[1]).abs() <= 64.0 * f64::EPSILON * (terms[0].abs() + terms[1].abs()));
         }
-        println!("{unseen} unseen, {:?} and {:?}", state.q(), other.q());
-        assert!(unseen > 1000);
-        // A regular motion of ten seconds: rounding errors of 2000 steps, each of a few units, at random and growing linearly.
-        let bound = 2000.0 * 4.0 * f64::EPSILON;
-        for i in 0..3 {
-            approx::assert_abs_diff_eq!(state.q()[i], other.q()[i], epsilon = bound);
-            approx::assert_abs_diff_eq!(state.v()[i], other.v()[i], epsilon = bound);
-        }
+        assert!(count > 190, "{count} predicted steps");
     }
 
     /// A run is the same to the last bit, whatever its method was used for before.
@@ -282,7 +302,7 @@ mod tests {
             method.kept.fails();
             let ready_again = || {
                 let state = start();
-                method.kept.begins::<4, 2>(Some((unit, unit)), None, STEP, (state.q(), state.v()), state.v());
+                method.kept.begins::<4>(Some((unit, unit)), STEP, (state.q(), state.v()));
                 method.kept.is_ready()
             };
             assert_eq!(std::iter::repeat_with(ready_again).take_while(|ready| !ready).count(), pause);

@@ -310,7 +310,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
                 q = self.q(&along, &v1);
             }
             let Some(a1) = self.acceleration(simd, &q, &xi) else { return CollocationOutcome::Unknown };
-            let verdict = if search.next_is_unseen() {
+            let verdict = if search.next_is_untested() {
                 EndingVerdict::Continue
             } else {
                 let [cv, ca] = match counts {

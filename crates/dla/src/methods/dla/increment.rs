@@ -82,14 +82,8 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
     /// Both ends of a step with the mean velocity `v`, in first order alone.
     #[inline]
     pub(crate) fn momenta(&self, v: &[f64; N]) -> Departure<N> {
-        self.momenta_along(v, v)
-    }
-
-    /// The momenta with the nodes placed by the mean velocity `way`, which is near to `v`.
-    #[inline]
-    pub(crate) fn momenta_along(&self, way: &[f64; N], v: &[f64; N]) -> Departure<N> {
         let Self { rules, system, t0, h, q0, .. } = *self;
-        self.departing(&rules.momenta(system, (t0, h), &q0, way, v))
+        self.departing(&rules.momenta(system, (t0, h), &q0, v))
     }
 
     /// Both ends of a step that begins with the momenta `p0`.

@@ -1,7 +1,6 @@
 use crate::{Discretisation, EndMomenta, Mechanics, RoundedStep, Rules};
 use lagrangian::{
-    AdmissibleBasis, Dual, HyperDual, Midpoint, Rounded, Rule, Scalar, TwiceDifferentiable, from_fn, mapped,
-    second_derivatives, seed,
+    Dual, HyperDual, Midpoint, Rounded, Rule, Scalar, TwiceDifferentiable, from_fn, mapped, second_derivatives, seed,
 };
 
 /// A discrete Lagrangian `L_d(q0, q1; t0, h)` of a system, an approximation of the action over one step (the book, (2.1)), that is written
@@ -110,7 +109,6 @@ impl<L: DiscreteLagrangian<N>, const N: usize, const M: usize> Discretisation<N,
         _system: &dyn Mechanics<N, M>,
         (t0, h): (f64, f64),
         q0: &[f64; N],
-        _way: &[f64; N],
         v: &[f64; N],
     ) -> EndMomenta<N> {
         EndMomenta { slopes: slopes(self, t0, h, q0, v), forces: self.forces(t0, h, q0, v) }
@@ -144,16 +142,6 @@ impl<L: DiscreteLagrangian<N>, const N: usize, const M: usize> Discretisation<N,
 
     fn rows(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
         constraint(self).rows(system, time, q0, v)
-    }
-
-    fn basis_along(
-        &self,
-        system: &dyn Mechanics<N, M>,
-        time: (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-    ) -> Option<AdmissibleBasis<f64, N, M>> {
-        constraint(self).basis_along(system, time, q0, way)
     }
 
     #[cold]

@@ -67,7 +67,7 @@ impl GaussMemory {
     /// The number of iterations of the next step that are made without a convergence test, which takes a third of their time. The step will
     /// take about as many iterations as the last one, and the tests of the last few show the rate of contraction.
     #[inline(always)]
-    pub(super) fn unseen(&self) -> u32 {
+    pub(super) fn untested(&self) -> u32 {
         self.iterations.saturating_sub(4)
     }
 

@@ -14,7 +14,6 @@ mod fixed_point;
 mod residual;
 pub mod tolerances;
 
-pub(crate) use corrections::is_settled;
 pub use corrections::{Convergence, CorrectionKind, Demand, rounding_of_place};
 pub use fixed_point::FixedPoint;
 pub(crate) use residual::{most_roundings, parted, without_reaction};

@@ -3,7 +3,7 @@ use lagrangian::mul_add;
 use std::fmt;
 
 /// Number of steps that give a predictor of order 7 in the step.
-const USUAL: usize = 7;
+const K: usize = 7;
 /// From fewer the predictor is worse than that from the last acceleration.
 const FEWEST: usize = 3;
 
@@ -12,7 +12,7 @@ const FEWEST: usize = 3;
 /// An iteration that starts there is short. The prediction is made when an increment is stored, so that the next step does not load what
 /// has just been stored.
 #[derive(Clone, Copy)]
-pub(crate) struct Past<const N: usize, const K: usize = USUAL> {
+pub(crate) struct Past<const N: usize> {
     /// The increment of one more step.
     next: [f64; N],
     /// A ring buffer that holds each increment twice, `K` places apart: so the last `K` are contiguous wherever the last one is, and
@@ -24,14 +24,14 @@ pub(crate) struct Past<const N: usize, const K: usize = USUAL> {
     last: usize,
 }
 
-impl<const N: usize, const K: usize> fmt::Debug for Past<N, K> {
+impl<const N: usize> fmt::Debug for Past<N> {
     /// Without the positions in the buffer.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Past").field("step", &self.step).field("increments", &self.increments()).finish()
     }
 }
 
-impl<const N: usize, const K: usize> PartialEq for Past<N, K> {
+impl<const N: usize> PartialEq for Past<N> {
     /// Forgotten increments do not count.
     fn eq(&self, other: &Self) -> bool {
         let same_step = self.made == 0 || self.step.to_bits() == other.step.to_bits();
@@ -39,7 +39,7 @@ impl<const N: usize, const K: usize> PartialEq for Past<N, K> {
     }
 }
 
-impl<const N: usize, const K: usize> Past<N, K> {
+impl<const N: usize> Past<N> {
     /// Binomial coefficients, for one increment more than the index: with them the next backward difference vanishes.
     const WEIGHTS: [[f64; K]; K] = {
         let mut all = [[0.0; K]; K];
@@ -92,12 +92,6 @@ impl<const N: usize, const K: usize> Past<N, K> {
         }
     }
 
-    /// Whether all `K` increments are there.
-    #[inline(always)]
-    pub(crate) fn is_full(&self) -> bool {
-        self.made >= K
-    }
-
     /// Forgets all increments.
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
@@ -126,13 +120,6 @@ impl<const N: usize, const K: usize> Past<N, K> {
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn next(&self, h: f64) -> Option<[f64; N]> {
         (self.step == h && self.made >= FEWEST).then_some(self.next)
-    }
-
-    /// As [`Self::next`], from any number of steps of that length.
-    #[inline(always)]
-    #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
-    pub(crate) fn following(&self, h: f64) -> Option<[f64; N]> {
-        (self.step == h && self.made > 0).then_some(self.next)
     }
 
     /// Every number of it, in a fixed order.

@@ -1,23 +1,15 @@
 use crate::Mechanics;
-use lagrangian::{AdmissibleBasis, Dual, HyperDual, Rounded, Rule, from_fn, mapped, on_line};
+use lagrangian::{Dual, HyperDual, Rounded, Rule, from_fn, mapped, on_line};
 
 /// A discrete Lagrangian and a discrete constraint, as the equations of a step ask for them: in numbers.
 ///
 /// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`, a step by its time and length `(t0, h)`. [`Rules`] are
 /// quadrature rules for both; a user writes a [`DiscreteLagrangian`](crate::DiscreteLagrangian).
 pub trait Discretisation<const N: usize, const M: usize> {
-    /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`, with the nodes placed by the mean velocity `way`, which is
-    /// near to `v`: what depends on the nodes alone need not be evaluated again for `v`.
-    fn momenta(
-        &self,
-        system: &dyn Mechanics<N, M>,
-        time: (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-        v: &[f64; N],
-    ) -> EndMomenta<N>;
+    /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`.
+    fn momenta(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> EndMomenta<N>;
 
-    /// The momenta with nodes placed by `v`, and the derivatives of `D1 L_d + f_d^-` in the mean velocity.
+    /// The momenta, and the derivatives of `D1 L_d + f_d^-` in the mean velocity.
     fn linearised(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -31,18 +23,6 @@ pub trait Discretisation<const N: usize, const M: usize> {
 
     /// The residual with its derivatives in the mean velocity.
     fn rows(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M];
-
-    /// The basis of the mean velocities with `w_d = 0`, if it is the system's basis at one configuration, which the mean velocity `way`
-    /// gives; `None` by default.
-    fn basis_along(
-        &self,
-        _system: &dyn Mechanics<N, M>,
-        _time: (f64, f64),
-        _q0: &[f64; N],
-        _way: &[f64; N],
-    ) -> Option<AdmissibleBasis<f64, N, M>> {
-        None
-    }
 
     /// `D1 L_d` and `f_d^-`, and `w_d`, with bounds on the rounding of their terms; the velocity has its own.
     fn rounded(
@@ -95,18 +75,11 @@ impl Rules {
 impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
     /// By the derivatives in configuration and velocity at every node.
     #[inline]
-    fn momenta(
-        &self,
-        system: &dyn Mechanics<N, M>,
-        (t0, h): (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-        v: &[f64; N],
-    ) -> EndMomenta<N> {
+    fn momenta(&self, system: &dyn Mechanics<N, M>, (t0, h): (f64, f64), q0: &[f64; N], v: &[f64; N]) -> EndMomenta<N> {
         let [mut d1, mut d2] = [[0.0; N]; 2];
         let mut forces = Some([[0.0; N]; 2]);
         for node in self.lagrangian.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, way);
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
             let part = h * node.alpha;
             let slopes = system.slopes(t, &q, v);
             for i in 0..N {
@@ -198,20 +171,6 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
             }
         }
         sum
-    }
-
-    /// The basis at the only node of the rule, if the constraints are linear.
-    #[inline]
-    fn basis_along(
-        &self,
-        system: &dyn Mechanics<N, M>,
-        (t0, h): (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-    ) -> Option<AdmissibleBasis<f64, N, M>> {
-        let [node] = self.constraint.nodes() else { return None };
-        let (t, q) = on_line(node.alpha, t0, h, q0, way);
-        system.linear_basis(t, &q).map(|(_, basis)| basis)
     }
 
     #[cold]

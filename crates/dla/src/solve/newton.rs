@@ -57,9 +57,15 @@ pub(crate) trait BlockEquations<const U: usize, const S: usize> {
         0.0
     }
 
-    /// Whether the last correction was simplified.
+    /// How the last correction was made.
     #[inline(always)]
-    fn is_simplified(&self) -> bool {
+    fn kind(&self) -> CorrectionKind {
+        CorrectionKind::Newton
+    }
+
+    /// Whether the equations are met at the point of the last correction, to the round-off of their terms: the correction is not added then.
+    #[inline(always)]
+    fn is_met(&self) -> bool {
         false
     }
 }
@@ -89,8 +95,8 @@ impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
     }
 
     #[inline(always)]
-    fn is_simplified(&self) -> bool {
-        self.0.is_simplified()
+    fn kind(&self) -> CorrectionKind {
+        if self.0.is_simplified() { CorrectionKind::Simplified } else { CorrectionKind::Newton }
     }
 }
 
@@ -202,19 +208,23 @@ impl Newton {
                 source,
                 history: convergence.history(),
             })?;
+            let root = |convergence: &Convergence<'_>| NewtonRoot {
+                iterations: convergence.made(),
+                first: convergence.first(),
+                certain: convergence.is_certain(),
+            };
+            if equations.is_met() {
+                return Ok(root(&convergence));
+            }
             let at = *x;
             for (x, d) in x.as_flattened_mut().iter_mut().zip(correction.as_flattened()) {
                 *x += d;
             }
-            let kind = if equations.is_simplified() { CorrectionKind::Simplified } else { CorrectionKind::Newton };
-            let demand = Demand { kind, tolerance: self.tolerance, limit: self.max_iterations, refinable, near };
+            let (kind, tolerance, limit) = (equations.kind(), self.tolerance, self.max_iterations);
+            let demand = Demand { kind, tolerance, limit, refinable, near };
             let (x, correction) = (x.as_flattened(), correction.as_flattened());
             if convergence.check(demand, x, correction, || equations.roundings(&at))? {
-                return Ok(NewtonRoot {
-                    iterations: convergence.made(),
-                    first: convergence.first(),
-                    certain: convergence.is_certain(),
-                });
+                return Ok(root(&convergence));
             }
             if refinable && convergence.is_unmet() {
                 refinable = equations.refine();
@@ -234,4 +244,54 @@ pub(crate) struct NewtonRoot {
     /// inverse all the way there, so that its determinant keeps its sign. (Deuflhard 2004, Newton Methods for Nonlinear
     /// Problems, sections 2.1 and 3.3.)
     pub(crate) certain: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOLERANCE: f64 = 4.0 * f64::EPSILON;
+
+    /// `x = 1` and `y = 1e-3` with a frozen Jacobian: corrections shrink by `1 - rate`.
+    struct Frozen {
+        rate: f64,
+    }
+
+    impl BlockEquations<2, 1> for Frozen {
+        fn correction(&mut self, [x]: &[[f64; 2]; 1]) -> Result<[[f64; 2]; 1], Singular> {
+            Ok([[self.rate * (1.0 - x[0]), self.rate * (1e-3 - x[1])]])
+        }
+
+        fn roundings(&self, _x: &[[f64; 2]; 1]) -> Option<f64> {
+            Some(f64::INFINITY)
+        }
+
+        fn kind(&self) -> CorrectionKind {
+            CorrectionKind::Frozen
+        }
+    }
+
+    /// The number of corrections, and the error relative to the solution.
+    fn search(rate: f64) -> Option<(u32, f64)> {
+        let mut x = [[0.9, 0.9e-3]];
+        let found =
+            Newton { tolerance: TOLERANCE, max_iterations: 8 }.search_blocks(&mut Frozen { rate }, &mut x).ok()?;
+        Some((found.iterations, f64::max((x[0][0] - 1.0).abs(), (1e3 * x[0][1] - 1.0).abs())))
+    }
+
+    #[test]
+    fn a_good_frozen_jacobian_serves() {
+        for rate in [1.0, 0.999, 0.99] {
+            let (made, error) = search(rate).unwrap();
+            println!("rate {rate}: {made} corrections, error {error:e}");
+            assert!(error <= 4.0 * TOLERANCE);
+        }
+        assert!(search(0.99).unwrap().0 > search(1.0).unwrap().0);
+    }
+
+    /// Corrections that shrink slowly, corrections that shrink by enough but are too many, and NaN.
+    #[test]
+    fn a_poor_one_is_given_up() {
+        assert_eq!([0.8, 0.9, f64::NAN].map(search), [None; 3]);
+    }
 }

@@ -15,7 +15,7 @@ pub(super) struct Ending {
     /// An iteration whose contraction factor is above this does not converge.
     pub(super) hopeless: f64,
     /// Iterations that are made without a test, if there is a predictor.
-    pub(super) unseen: u32,
+    pub(super) untested: u32,
 }
 
 /// An iteration under way.
@@ -45,9 +45,9 @@ impl Ending {
     #[inline(always)]
     pub(super) fn begin(self, led: bool) -> StageSearch {
         // The count may come from a file: the limit holds all the same.
-        let unseen = if led { self.unseen } else { ANEW }.min(self.limit.saturating_sub(1));
+        let untested = if led { self.untested } else { ANEW }.min(self.limit.saturating_sub(1));
         StageSearch {
-            ending: Self { unseen, ..self },
+            ending: Self { untested, ..self },
             iterations: 0,
             last: f64::INFINITY,
             rate: 1.0,
@@ -60,16 +60,16 @@ impl Ending {
 impl StageSearch {
     /// Counts an iteration; returns true if it has no test.
     #[inline(always)]
-    pub(super) fn next_is_unseen(&mut self) -> bool {
+    pub(super) fn next_is_untested(&mut self) -> bool {
         self.iterations += 1;
-        self.iterations <= self.ending.unseen
+        self.iterations <= self.ending.untested
     }
 
     /// Tests the largest change of an iteration.
     #[inline(always)]
     pub(super) fn look(&mut self, moved: f64) -> EndingVerdict {
-        let Ending { left, rounding, noise, limit, hopeless, unseen } = self.ending;
-        let seen = self.iterations - unseen;
+        let Ending { left, rounding, noise, limit, hopeless, untested } = self.ending;
+        let seen = self.iterations - untested;
         let (slower, now) = (if seen > 2 { self.rate } else { 0.0 }, moved / self.last);
         self.rate = if seen > 1 { now } else { self.rate };
         // From a good predictor the first iterations may contract faster than the later ones.
@@ -106,12 +106,13 @@ mod tests {
     use super::*;
     use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 
-    const ENDING: Ending = Ending { left: LEFT, rounding: OF_ROW, noise: NOISE, limit: 100, hopeless: 2.0, unseen: 12 };
+    const ENDING: Ending =
+        Ending { left: LEFT, rounding: OF_ROW, noise: NOISE, limit: 100, hopeless: 2.0, untested: 12 };
 
     /// The verdict after these changes, one after the other, and after how many of them it was reached.
     fn search(changes: &[f64]) -> (usize, EndingVerdict) {
         let mut search = ENDING.begin(true);
-        while search.next_is_unseen() {}
+        while search.next_is_untested() {}
         for (seen, &moved) in (1..).zip(changes) {
             match search.look(moved) {
                 EndingVerdict::Continue => search.iterations += 1,
@@ -138,7 +139,7 @@ mod tests {
     fn rounding_tells_no_contraction() {
         let contraction = |changes: &[f64]| {
             let mut search = ENDING.begin(true);
-            while search.next_is_unseen() {}
+            while search.next_is_untested() {}
             for &moved in changes {
                 search.look(moved);
                 search.iterations += 1;
@@ -168,8 +169,8 @@ mod tests {
     /// Without a predictor the first iterations have no test; every iteration has one in the end.
     #[test]
     fn some_are_not_looked_at() {
-        assert_eq!((ENDING.begin(false).ending.unseen, ENDING.begin(true).ending.unseen), (ANEW, 12));
-        assert_eq!(Ending { limit: 5, ..ENDING }.begin(true).ending.unseen, 4);
-        assert_eq!(Ending { limit: 0, ..ENDING }.begin(false).ending.unseen, 0);
+        assert_eq!((ENDING.begin(false).ending.untested, ENDING.begin(true).ending.untested), (ANEW, 12));
+        assert_eq!(Ending { limit: 5, ..ENDING }.begin(true).ending.untested, 4);
+        assert_eq!(Ending { limit: 0, ..ENDING }.begin(false).ending.untested, 0);
     }
 }
