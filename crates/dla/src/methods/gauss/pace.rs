@@ -1,6 +1,7 @@
 //! The length of the next step.
 use super::rule::{LONGER, SHORTER};
 use lagrangian::linear::larger;
+use lagrangian::octaves;
 
 /// The largest roughness of a step at the tolerance one.
 const SMOOTHNESS: f64 = 2.0;
@@ -40,13 +41,6 @@ pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i
 /// to the step.
 pub(super) fn shorter(excess: f64) -> i32 {
     (4.0 * octaves(excess)).ceil().clamp(3.0, f64::from(SHORTER)) as i32
-}
-
-/// About the binary logarithm of a positive number, at most .09 below it: good enough for the length of a step, and four
-/// instructions. Exact at powers of two.
-#[inline(always)]
-fn octaves(x: f64) -> f64 {
-    (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
 }
 
 /// The quarter octaves of a length (s), rounded down.
