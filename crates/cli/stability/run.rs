@@ -5,9 +5,9 @@ use super::formulas::Formulas;
 use crate::error::CliError;
 use crate::inspect::method_names;
 use dla::{AnyState, Dependency, Hint, Schedule, StepError};
+use harness::Method;
 use harness::stability::check::{self, Finding};
 use harness::stability::{Recorded, Recorder, Trial, VALUES, Verdict, claims, judge};
-use harness::Method;
 use scene::{AnyScene, BuiltScene, Setting, with_settings};
 
 impl HardCase {
