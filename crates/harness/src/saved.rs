@@ -185,7 +185,7 @@ impl Run<'_> {
                     let ended = watch.ended().is_some();
                     done = outcome?;
                     if ended {
-                        start.iter().for_each(|made| save(made));
+                        start.iter().for_each(&mut save);
                         break;
                     }
                     seen = Some((times.time(done.made), state.clone()));

@@ -188,14 +188,14 @@ impl std::fmt::Debug for Nodes<'_> {
 }
 
 impl Trajectory {
-    fn take(&mut self, node: Node) {
-        self.nodes.push(node);
+    fn take(&mut self, node: Option<Node>) {
+        self.nodes.extend(node);
     }
 }
 
 impl Nodes<'_> {
-    fn take(&mut self, node: Node) {
-        (self.sink)(&node);
+    fn take(&mut self, node: Option<Node>) {
+        node.into_iter().for_each(|node| (self.sink)(&node));
     }
 }
 
@@ -205,7 +205,7 @@ macro_rules! takes_nodes {
         impl Observer for $observer {
             fn start(&mut self, node: &View<'_>) {
                 let node = self.choice.start(node);
-                self.take(node);
+                self.take(Some(node));
             }
 
             fn resume(&mut self, node: &View<'_>) {
@@ -214,7 +214,7 @@ macro_rules! takes_nodes {
 
             fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
                 let node = self.choice.step(node, report);
-                node.into_iter().for_each(|node| self.take(node));
+                self.take(node);
                 ControlFlow::Continue(())
             }
 
@@ -228,7 +228,7 @@ macro_rules! takes_nodes {
 
             fn end(&mut self, node: &View<'_>) {
                 let node = self.choice.end(node);
-                node.into_iter().for_each(|node| self.take(node));
+                self.take(node);
             }
         }
     )* };

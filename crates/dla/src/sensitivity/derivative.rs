@@ -26,8 +26,7 @@ pub struct Tangent<const N: usize, const P: usize> {
 /// `A dv + d(A v + b)/dq dq + d(A v + b)/dp dp + .. = 0`. Along them this is the derivative of the map, and the result
 /// is admissible at the end. A single column need not be admissible. Off the distribution it is the derivative of the map's extension by
 /// the equations in their general form: `v0` acts through its momentum tested against the admissible velocities ([`Dla`](crate::Dla)),
-/// through the momenta of the stages ([`Lobatto`](crate::Lobatto)), or by its part along the basis ([`Gauss`](crate::Gauss),
-/// [`Energy`](crate::Energy)). [`StepDerivative::reduced`] has no such columns.
+/// or by its part along the basis ([`Gauss`](crate::Gauss)). [`StepDerivative::reduced`] has no such columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepDerivative<const N: usize, const M: usize, const P: usize> {
     /// In every component of `q0`.

@@ -16,14 +16,14 @@ fn system() -> Particle {
 }
 
 /// All that a run measures but its time, each number with every digit and its sign.
-fn told(record: Record) -> String {
+fn told(record: &Record) -> String {
     assert!(record.failure.is_none(), "{record:?}");
-    bits(&record)
+    bits(record)
 }
 
 fn once(info: &MethodInfo, (steps, _): Length) -> String {
     let method = Method::named(info.name, Some(0.3)).unwrap();
-    told(run(&Subject::from(&system()), &method, &request(steps, 0.05)))
+    told(&run(&Subject::from(&system()), &method, &request(steps, 0.05)))
 }
 
 test_systems::short_and_full! {
@@ -60,7 +60,7 @@ fn check_checkpoints(methods: impl Iterator<Item = &'static MethodInfo>, length:
     for info in methods {
         let method = Method::named(info.name, Some(0.3)).unwrap();
         let whole = goes_on_to_the_same_bits(&Subject::from(&system()), &method, &request(length.0, 0.05), length.1);
-        assert_eq!(told(whole), once(info, length), "{}", info.name);
+        assert_eq!(told(&whole), once(info, length), "{}", info.name);
     }
 }
 
@@ -75,7 +75,7 @@ fn check_bit(methods: impl Iterator<Item = &'static MethodInfo>, length: Length)
         let method = Method::named(info.name, Some(0.3)).unwrap();
         let mut request = request(length.0, 0.05);
         request.q[0] = request.q[0].next_up();
-        let other = told(run(&Subject::from(&system()), &method, &request));
+        let other = told(&run(&Subject::from(&system()), &method, &request));
         assert_ne!(other, once(info, length), "{}", info.name);
     }
 }
