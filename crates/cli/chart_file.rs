@@ -1,3 +1,4 @@
+use crate::args::SceneArguments;
 use crate::csv_text;
 use crate::error::CliError;
 use crate::file_roles::FileRoles;
@@ -32,20 +33,25 @@ impl<'a> ChartFile<'a> {
         Ok(file)
     }
 
+    pub(crate) fn path(self) -> &'a Path {
+        let (Self::Csv(path) | Self::Svg(path)) = self;
+        path
+    }
+
     /// Writes the rows below their header, with what made them in a file beside; or the chart.
     pub(crate) fn write(
         self,
         overwrite: bool,
         provenance: &Provenance,
-        (columns, rows): (&[Column], &[Vec<f64>]),
+        (columns, rows): (&[Column], &dyn Fn() -> Vec<Vec<f64>>),
         chart: impl FnOnce() -> Chart,
     ) -> Result<(), CliError> {
         match self {
             Self::Csv(path) => {
                 write_whole(path, overwrite, |file| {
                     writeln!(file, "{}", csv_text::header(columns.iter().map(label)))?;
-                    for row in rows {
-                        let cells: Vec<String> = columns.iter().zip(row).map(|(column, x)| cell(column, *x)).collect();
+                    for row in rows() {
+                        let cells: Vec<String> = columns.iter().zip(&row).map(|(column, x)| cell(column, *x)).collect();
                         writeln!(file, "{}", cells.join(","))?;
                     }
                     Ok(())
@@ -55,6 +61,23 @@ impl<'a> ChartFile<'a> {
             Self::Svg(path) => write_whole(path, overwrite, |file| file.write_all(chart_svg(&chart()).as_bytes())),
         }
     }
+}
+
+/// Checks the file of `--picture`, before the work begins.
+pub(crate) fn check_picture(path: Option<&Path>, shared: &SceneArguments) -> Result<(), CliError> {
+    let Some(path) = path else { return Ok(()) };
+    FileRoles::of(&shared.scene).writes("--picture", Some(path)).check()?;
+    check_file(path, shared.force)
+}
+
+/// Writes the file of `--picture`.
+pub(crate) fn write_picture(
+    path: Option<&Path>,
+    shared: &SceneArguments,
+    chart: impl FnOnce() -> Chart,
+) -> Result<(), CliError> {
+    let Some(path) = path else { return Ok(()) };
+    write_whole(path, shared.force, |file| file.write_all(chart_svg(&chart()).as_bytes()))
 }
 
 /// A number as a file has it: one of a column of whole numbers without a point.

@@ -3,6 +3,7 @@
 use crate::csv_text::quoted;
 use crate::provenance::{DescribedColumn, Provenance};
 use report::{Numbers, file_stem};
+use scene::AnyScene;
 use serde_json::{Value, json};
 
 /// A column of the CSV file: its heading, the JSON pointer to its field, and the data type.
@@ -51,12 +52,8 @@ pub(crate) fn json(scene: &str, rows: &[&Value], interrupted: bool) -> Value {
 }
 
 /// The files beside the page.
-pub(crate) fn files(
-    name: &str,
-    scene: (&str, Option<String>),
-    rows: &[&Value],
-    interrupted: Option<&str>,
-) -> Vec<Numbers> {
+pub(crate) fn files(scene: &AnyScene, rows: &[&Value], interrupted: Option<&str>) -> Vec<Numbers> {
+    let name = scene.name();
     let text = format!("{:#}\n", json(name, rows, interrupted.is_some()));
     let provenance = Provenance::on(scene, None, json!({})).interrupted(interrupted);
     let described = columns().map(|(heading, _, datatype)| DescribedColumn::headed(heading, datatype));

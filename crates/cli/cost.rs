@@ -22,7 +22,7 @@ type Part = (Vec<&'static str>, AnyScene);
 /// `noslip cost`: the cost of a step without effects, with each effect alone, and with all; for a system of text, without and with its
 /// forces.
 pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
-    let scene = inspect::load_any(arguments, None)?;
+    let scene = inspect::load(arguments, None)?;
     notes::moves(&scene);
     let (parts, operations) = match &scene {
         AnyScene::Sleigh(scene) => (with_effects(scene), None),

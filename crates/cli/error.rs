@@ -1,3 +1,4 @@
+use crate::terminal;
 use dla::{CheckpointError, RecommendError};
 use harness::MethodError;
 use harness::analysis::EquilibriumError;
@@ -117,4 +118,17 @@ impl CliError {
             Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => 1,
         }
     }
+}
+
+/// The outcome of work that may have been interrupted; an earlier failure is printed.
+pub(crate) fn unless_interrupted(
+    interrupted: Option<String>,
+    resume: Option<PathBuf>,
+    outcome: Result<(), CliError>,
+) -> Result<(), CliError> {
+    let Some(made) = interrupted else { return outcome };
+    if let Err(error) = outcome {
+        terminal::say("error", &error);
+    }
+    Err(CliError::Interrupted { made, resume })
 }

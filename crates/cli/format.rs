@@ -1,4 +1,6 @@
 use crate::error::CliError;
+use crate::files::check_file;
+use crate::provenance::metadata_of;
 use std::path::Path;
 
 /// The formats in which rows of numbers are written.
@@ -37,6 +39,11 @@ impl Format {
             "parquet" => Some(Self::Parquet),
             _ => None,
         }
+    }
+
+    /// Checks, before the work begins, the file of metadata that a text format has beside `path`.
+    pub(crate) fn check_metadata(self, path: &Path, overwrite: bool) -> Result<(), CliError> {
+        if self.is_text() { check_file(&metadata_of(path), overwrite) } else { Ok(()) }
     }
 
     /// Whether rows are lines of text, that can be written as they come.

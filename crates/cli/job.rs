@@ -1,6 +1,6 @@
-use crate::compare::{compare_scene, methods, unless_interrupted};
-use crate::error::CliError;
-use crate::inspect::method_names;
+use crate::compare::compare_scene;
+use crate::error::{CliError, unless_interrupted};
+use crate::inspect::{method_names, methods};
 use crate::interrupt::Interrupt;
 use crate::saves::Saves;
 use crate::table::ComparisonRow;
@@ -19,7 +19,7 @@ pub(crate) fn everything(folder: &Path) -> Result<(), CliError> {
     for bundled in scene::bundled() {
         let scene = AnyScene::load(bundled.name, &method_names())?;
         let methods = methods(&method_names(), scene.run().alpha, scene.run().tolerance)?;
-        let comparison = compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
+        let comparison = compare_scene(&scene, &methods, &Saves::default(), &interrupt)?;
         comparison.print(&scene)?;
         terminal::print("\n")?;
         comparison.rows.iter().for_each(|row| totals.add(&row.json));

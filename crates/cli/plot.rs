@@ -3,13 +3,13 @@
 use crate::args::{PlotArguments, Size};
 use crate::called::Caller;
 use crate::columns_file::{self, Columns, NamedColumn};
-use crate::compare::methods;
 use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::in_memory::{self, RunRequest};
+use crate::provenance::label;
 use crate::{files, inspect, table, terminal};
 use report::{FigureFormat, MOST_PIXELS, Panel, Paper, Sheet, sheet};
-use scene::AnyScene;
+use scene::{AnyScene, Column};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -109,11 +109,11 @@ pub(crate) fn made(
     names: Option<&[String]>,
     failures: &mut Vec<String>,
 ) -> Result<Vec<(String, Columns)>, CliError> {
-    let names: Vec<&str> = match names {
-        Some(names) => names.iter().map(|name| name.trim()).collect(),
+    let names = match names {
+        Some(_) => inspect::listed(names),
         None => vec![scene.run().method.as_str()],
     };
-    methods(&names, scene.run().alpha, scene.run().tolerance)?;
+    inspect::methods(&names, scene.run().alpha, scene.run().tolerance)?;
     let request = RunRequest { every: scene.run().steps().div_ceil(NODES), ..RunRequest::default() };
     names.iter().map(|method| run(scene, method, &request, failures)).collect()
 }
@@ -132,7 +132,7 @@ fn run(
     })?;
     failures.extend(result.failure);
     let columns = result.columns.into_iter().zip(result.numbers);
-    let columns = columns.map(|(column, values)| NamedColumn { name: column.name, unit: Some(column.unit), values });
+    let columns = columns.map(|(Column { name, unit, .. }, values)| NamedColumn { name, unit, values });
     Ok((method.to_owned(), columns.collect()))
 }
 
@@ -170,10 +170,9 @@ pub(crate) fn drawing(
 fn panel(name: &str, runs: &[(String, Columns)]) -> Panel {
     let (across, up) = if name == PATH { ("x", "y") } else { ("t", name) };
     let column = |columns: &'_ Columns, name: &str| columns.iter().find(|column| column.name == name).cloned();
-    let unit = |name: &str| runs.first().and_then(|(_, columns)| column(columns, name)).and_then(|column| column.unit);
     let title = |name: &str| {
-        let unit = unit(name).filter(|unit| !unit.is_empty()).map_or_else(String::new, |unit| format!(" [{unit}]"));
-        format!("{}{unit}", words(name))
+        let unit = runs.first().and_then(|(_, columns)| column(columns, name)).map_or_else(String::new, |of| of.unit);
+        label(&Column::new(words(name), unit))
     };
     let mut axes = [title(across), title(up)];
     let mut curves: Vec<Vec<[f64; 2]>> = runs

@@ -1,9 +1,9 @@
 //! The results of `noslip precision`: the same values as a table, as JSON and in the report.
 
+use crate::csv_text::quoted;
 use crate::json::failure;
-use crate::measurement::Measurement;
-use crate::precision_csv::{self, points, settings};
-use crate::provenance::Provenance;
+use crate::precision::Measurement;
+use crate::provenance::{DescribedColumn, Provenance};
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, seconds_to};
 use report::{CostCurve, CostPoint, Numbers, Report, SceneReport, Table, file_stem};
@@ -213,6 +213,62 @@ fn json_method(curve: &Curve) -> Value {
     object
 }
 
+/// The columns, and the types of their fields.
+const FILE: [(&str, &str); 11] = [
+    ("method", "string"),
+    ("step [s]", "double"),
+    ("tolerance", "double"),
+    ("steps", "integer"),
+    ("error [m or rad]", "double"),
+    ("wall [s]", "double"),
+    ("CPU [s]", "double"),
+    ("spread", "double"),
+    ("mark", "string"),
+    ("pareto", "boolean"),
+    ("source", "string"),
+];
+
+/// The columns, for the file of metadata.
+pub(crate) fn described() -> impl Iterator<Item = DescribedColumn> {
+    FILE.iter().map(|(heading, datatype)| DescribedColumn::headed(heading, datatype))
+}
+
+/// The points, one on a line.
+pub(crate) fn csv(curves: &[Curve]) -> String {
+    let mut text = FILE.map(|(heading, _)| heading).join(",") + "\n";
+    let some = |value: Option<f64>| value.map_or_else(String::new, number);
+    for (_, point) in points(curves) {
+        let [step, tolerance] = settings(point).map(some);
+        let steps = point.steps.map_or_else(String::new, |steps| steps.to_string());
+        let [error, wall, cpu, spread] = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(some);
+        let [method, mark, source] = [
+            point.method.clone(),
+            point.mark.as_ref().map_or_else(String::new, ToString::to_string),
+            point.source.clone().unwrap_or_default(),
+        ]
+        .map(|text| quoted(&text));
+        let pareto = point.pareto;
+        let _ = writeln!(
+            text,
+            "{method},{step},{tolerance},{steps},{error},{wall},{cpu},{spread},{mark},{pareto},{source}"
+        );
+    }
+    text
+}
+
+/// Step and tolerance, one of which a point has.
+fn settings(point: &PrecisionPoint) -> [Option<f64>; 2] {
+    match point.setting {
+        Some(RungSetting::Step(step)) => [Some(step), None],
+        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
+        None => [None, None],
+    }
+}
+
+fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &PrecisionPoint)> {
+    curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
+}
+
 /// The curve of a method in the diagrams.
 fn drawn(curve: &Curve) -> CostCurve {
     let label = curve.label();
@@ -252,15 +308,15 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Prov
             .collect(),
     };
     let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
-    let csv = format!("{}.csv", file_stem(scene.name()));
+    let file = format!("{}.csv", file_stem(scene.name()));
     let shown = SceneReport {
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
         facts,
         costs: Some(measured.curves.iter().map(drawn).collect()),
         numbers: vec![
-            Numbers { ending: "csv", text: precision_csv::text(&measured.curves) },
-            Numbers { ending: "csv-metadata.json", text: provenance.document(&csv, precision_csv::described()) },
+            Numbers { ending: "csv", text: csv(&measured.curves) },
+            Numbers { ending: "csv-metadata.json", text: provenance.document(&file, described()) },
             Numbers { ending: "json", text: format!("{:#}\n", json(scene, measured)) },
         ],
         ..SceneReport::default()

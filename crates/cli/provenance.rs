@@ -2,7 +2,7 @@ use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::files::write_whole;
 use crate::program;
-use scene::Column;
+use scene::{AnyScene, Column};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -28,11 +28,11 @@ impl Provenance {
 
     /// The provenance of rows that are computed on a scene: its title, and its text with all numbers as they were used, including changes
     /// by the command line.
-    pub(crate) fn on((title, text): (&str, Option<String>), command: Option<&CommandLine>, mut notes: Value) -> Self {
-        if let Some(text) = text {
+    pub(crate) fn on(scene: &AnyScene, command: Option<&CommandLine>, mut notes: Value) -> Self {
+        if let Ok(text) = scene.to_toml() {
             notes["scene"] = json!(text);
         }
-        Self::new(title, command, notes)
+        Self::new(scene.title(), command, notes)
     }
 
     /// Adds how far the work came, if a signal ended it.

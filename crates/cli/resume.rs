@@ -3,47 +3,47 @@ use crate::files::{check_file, place, read_text, write_whole};
 use crate::{program, terminal};
 use dla::{Checkpoint, CheckpointError, Schedule};
 use harness::Method;
-use scene::RunSettings;
+use scene::AnyScene;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 /// The largest checkpoint that is read (bytes): ten times the checkpoint of a train of a hundred thousand trailers.
 const LARGEST: u64 = 1 << 28;
 
-/// Identifies the run of a scene, with its name and contents, by a method. The contents have no duration: a longer run begins with the
-/// shorter one.
-pub(crate) fn identity(scene: (&str, &dyn std::fmt::Debug), method: &Method, schedule: &Schedule) -> Checkpoint {
-    Checkpoint::of(pairs(scene, method, schedule))
+/// Identifies the run of a scene by a method. A longer run begins with the shorter one, unless something jumps: the steps of a smooth piece
+/// are chosen for its length, so that a longer run has others after the last jump.
+pub(crate) fn identity(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkpoint {
+    let jumps = match scene {
+        AnyScene::Sleigh(scene) => scene.jumps().is_ok_and(|jumps| !jumps.is_empty()),
+        AnyScene::Text(scene) => !scene.jumps().is_empty(),
+    };
+    if jumps {
+        return identity_of_whole(scene, method, schedule);
+    }
+    let mut scene = scene.clone();
+    scene.run_mut().duration = 0.0;
+    Checkpoint::of(pairs(&scene, method, schedule))
 }
 
 /// As [`identity`], for a run whose record also depends on its length.
-pub(crate) fn identity_of_whole(
-    scene: (&str, &dyn std::fmt::Debug),
-    method: &Method,
-    schedule: &Schedule,
-) -> Checkpoint {
+pub(crate) fn identity_of_whole(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkpoint {
     Checkpoint::of(pairs(scene, method, schedule).chain([("steps", schedule.steps.to_string())]))
 }
 
-/// The settings of a run without its duration.
-pub(crate) fn endless(run: &RunSettings) -> RunSettings {
-    RunSettings { duration: 0.0, ..run.clone() }
-}
-
-fn pairs(
-    (name, contents): (&str, &dyn std::fmt::Debug),
-    method: &Method,
-    schedule: &Schedule,
-) -> impl Iterator<Item = (&'static str, String)> {
+fn pairs(scene: &AnyScene, method: &Method, schedule: &Schedule) -> impl Iterator<Item = (&'static str, String)> {
+    let contents = match scene {
+        AnyScene::Sleigh(scene) => format!("{scene:?}"),
+        AnyScene::Text(scene) => format!("{:?}", (&scene.words, &scene.start, &scene.run)),
+    };
     let parts = method.substeps().map(|_| ("substep", "yes".to_owned()));
     let run = [
-        ("scene", name.to_owned()),
+        ("scene", scene.name().to_owned()),
         ("method", method.info().name.to_owned()),
         ("step", schedule.step.to_string()),
         ("version", program::version()),
         ("instructions", program::instructions()),
         // All the rest: every number of the scene, with every digit.
-        ("contents", Checkpoint::fingerprint(&format!("{contents:?}"))),
+        ("contents", Checkpoint::fingerprint(&contents)),
     ];
     let tolerance = method.is_adaptive().then(|| ("tolerance", method.tolerance().to_string()));
     run.into_iter().chain(parts).chain(tolerance)

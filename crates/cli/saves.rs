@@ -4,6 +4,7 @@ use crate::files::check_folder;
 use crate::resume;
 use dla::{Checkpoint, Mechanism};
 use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
+use scene::AnyScene;
 use std::path::{Path, PathBuf};
 
 /// The folders in which the runs of a comparison are saved, a checkpoint for each method, and from which they go on.
@@ -35,10 +36,10 @@ impl Saves {
         self.to.as_deref()
     }
 
-    /// Makes a run of a scene, with its name and contents: at once if nothing is to be saved, else from checkpoint to checkpoint.
+    /// Makes a run of a scene: at once if nothing is to be saved, else from checkpoint to checkpoint.
     pub(crate) fn run(
         &self,
-        scene: (&str, &dyn std::fmt::Debug),
+        scene: &AnyScene,
         system: &dyn Mechanism,
         method: &Method,
         request: &Request,

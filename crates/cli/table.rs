@@ -1,6 +1,7 @@
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
 use lagrangian::Shown;
+use scene::AnyScene;
 use sleigh::SleighState;
 use std::fmt::Write;
 use std::path::Path;
@@ -100,7 +101,7 @@ pub(crate) fn better(record: &Record, better: &[(&str, f64)]) -> Option<String> 
 
 /// The table of a comparison, split into several tables if it is wider than `room` (characters).
 pub(crate) fn comparison(
-    (title, name, duration): (&str, &str, f64),
+    scene: &AnyScene,
     rows: &[ComparisonRow],
     interrupted: Option<&str>,
     room: Option<usize>,
@@ -110,7 +111,7 @@ pub(crate) fn comparison(
     let remark = |row: &ComparisonRow| row.cells.last().filter(|_| short(row)).cloned();
     let own = |row: &ComparisonRow| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
     let cells: Vec<_> = rows.iter().map(own).collect();
-    let mut text = format!("{title} ({name}), {} s\n", number(duration));
+    let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(scene.run().duration));
     let parts = parts(&COLUMNS, &cells, room);
     for (k, columns) in parts.iter().enumerate() {
         // A short row has no numbers for the tables after the first.

@@ -4,7 +4,7 @@ use crate::table::number;
 use dla::{Close, Event};
 use harness::SavedCrossing;
 use scene::Built;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::str::FromStr;
 
 /// A quantity by its name, and a value that it is to cross.
@@ -110,44 +110,6 @@ impl WatchedTrigger<'_> {
     }
 }
 
-/// An event that happened, for any number of coordinates.
-pub(crate) struct Happened<'a> {
-    name: &'a str,
-    t: f64,
-    within: f64,
-    spacing: f64,
-    rising: bool,
-    state: Map<String, Value>,
-}
-
-impl<'a> Happened<'a> {
-    /// In a system.
-    pub(crate) fn of(system: &Built<'_>, watched: &[WatchedTrigger<'a>], crossing: &SavedCrossing) -> Option<Self> {
-        let SavedCrossing { event, t, within, spacing, rising, q, v } = crossing;
-        let WatchedTrigger { trigger, quantity, function } = watched.get(*event)?;
-        let [t, within, spacing] = [*t, *within, *spacing];
-        let rising = function.rises(quantity.value(system, t, q, v), *rising);
-        let state = system.state(t, q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
-        Some(Self { name: &trigger.text, t, within, spacing, rising, state })
-    }
-
-    /// In the words of a scene, for `run --json`.
-    pub(crate) fn json(self) -> Value {
-        let Self { name, t, within, spacing, rising, state } = self;
-        let mut object = json!({"event": name, "t": t, "within": within, "spacing": spacing, "rising": rising});
-        if let Value::Object(fields) = &mut object {
-            fields.extend(state);
-        }
-        object
-    }
-
-    /// For a person.
-    pub(crate) fn told(&self) -> String {
-        let how = if self.rising { "rising" } else { "falling" };
-        format!("event      {}, {how}, at t = {} s\n", self.name, number(self.t))
-    }
-}
-
 /// The events of a run, for a program and for a person.
 pub(crate) struct Events {
     values: Vec<Value>,
@@ -156,10 +118,28 @@ pub(crate) struct Events {
 }
 
 impl Events {
-    pub(crate) fn new<'a>(happened: impl Iterator<Item = Happened<'a>>, close: Option<Close>) -> Self {
-        let told_and_value = |event: Happened<'a>| (event.told(), event.json());
-        let (told, values): (Vec<String>, Vec<Value>) = happened.map(told_and_value).unzip();
-        Self { values, told: told.concat(), close }
+    /// The crossings of a run of a system, in the words of its scene.
+    pub(crate) fn of(
+        system: &Built<'_>,
+        watched: &[WatchedTrigger<'_>],
+        crossings: &[SavedCrossing],
+        close: Option<Close>,
+    ) -> Self {
+        let (mut values, mut told) = (Vec::new(), String::new());
+        for SavedCrossing { event, t, within, spacing, rising, q, v } in crossings {
+            let Some(WatchedTrigger { trigger: Trigger { text, .. }, quantity, function }) = watched.get(*event) else {
+                continue;
+            };
+            let rising = function.rises(quantity.value(system, *t, q, v), *rising);
+            let how = if rising { "rising" } else { "falling" };
+            told += &format!("event      {text}, {how}, at t = {} s\n", number(*t));
+            let mut value = json!({"event": text, "t": t, "within": within, "spacing": spacing, "rising": rising});
+            for (quantity, number) in system.state(*t, q, v) {
+                value[quantity.name] = json!(number);
+            }
+            values.push(value);
+        }
+        Self { values, told, close }
     }
 
     /// Adds the events to the object of `run --json`.

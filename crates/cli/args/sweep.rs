@@ -1,7 +1,7 @@
 //! `noslip ensemble` and `merge`.
 
 use super::values::scene_path;
-use crate::ensemble::share::Share;
+use crate::ensemble::Share;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -1,5 +1,4 @@
-use super::lines;
-use super::rows::SpoolRows;
+use super::rows::{SpoolRows, numbers_of, parsed};
 use crate::csv_text;
 use crate::error::CliError;
 use crate::files::{as_written, write_whole};
@@ -71,7 +70,7 @@ fn content<'a>(
             arrays::write(file, &in_arrays(&columns), count, metadata, |push| {
                 let mut rows = rows()?;
                 while let Some(row) = rows.next()? {
-                    push(&lines::numbers_of(row))?;
+                    push(&numbers_of(row))?;
                 }
                 Ok(())
             })
@@ -79,7 +78,7 @@ fn content<'a>(
         #[cfg(feature = "parquet")]
         Format::Parquet => {
             let (mut rows, columns) = (rows()?, with_failed(columns));
-            let next = || rows.next().map(|text| text.map(lines::numbers_of)).transpose();
+            let next = || rows.next().map(|text| text.map(numbers_of)).transpose();
             crate::parquet_file::write(file, &columns, metadata, std::iter::from_fn(next))
         }
     }
@@ -97,7 +96,7 @@ pub(super) fn failed() -> Column {
 
 /// A row as a JSON object. The member is a whole number; a value that is not finite is null.
 fn object(columns: &[Column], row: &str) -> serde_json::Value {
-    let (values, error) = lines::parsed(row);
+    let (values, error) = parsed(row);
     let member: Option<u64> = row.split(',').next().and_then(|number| number.parse().ok());
     let mut object = serde_json::json!({ "member": member });
     for (column, value) in columns.iter().skip(1).zip(values) {

@@ -3,11 +3,10 @@
 mod words;
 
 use crate::args::JobArguments;
-use crate::compare::{compare_scene, methods, unless_interrupted};
-use crate::comparison::Comparison;
-use crate::error::CliError;
+use crate::compare::{Comparison, compare_scene};
+use crate::error::{CliError, unless_interrupted};
 use crate::files::ClaimedFolder;
-use crate::inspect::method_names;
+use crate::inspect::{method_names, methods};
 use crate::interrupt::Interrupt;
 use crate::saves::Saves;
 use crate::table::ComparisonRow;
@@ -47,8 +46,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let scene = AnyScene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
     let methods = methods(&METHODS, None, None)?;
     let interrupt = Interrupt::listen();
-    let Comparison { rows, mut report, interrupted } =
-        compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
+    let Comparison { rows, mut report, interrupted } = compare_scene(&scene, &methods, &Saves::default(), &interrupt)?;
     let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
     let mut sentences = words::sentences(&answers);
     if interrupted.is_none() {
