@@ -1,8 +1,8 @@
 use crate::args::SceneArguments;
-use crate::csv_text;
 use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
+use crate::format::csv_header;
 use crate::provenance::{Provenance, label, metadata_of};
 use report::{Chart, chart_svg};
 use scene::Column;
@@ -49,7 +49,7 @@ impl<'a> ChartFile<'a> {
         match self {
             Self::Csv(path) => {
                 write_whole(path, overwrite, |file| {
-                    writeln!(file, "{}", csv_text::header(columns.iter().map(label)))?;
+                    writeln!(file, "{}", csv_header(columns.iter().map(label)))?;
                     for row in rows() {
                         let cells: Vec<String> = columns.iter().zip(&row).map(|(column, x)| cell(column, *x)).collect();
                         writeln!(file, "{}", cells.join(","))?;

@@ -4,7 +4,7 @@ use crate::files::ClaimedFolder;
 use crate::in_memory::MOST_NUMBERS;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
-use crate::saves::Saves;
+use crate::resume::Saves;
 use crate::table::ComparisonRow;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{AnyState, Schedule};

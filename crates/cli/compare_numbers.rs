@@ -1,6 +1,6 @@
 //! The numbers of a comparison for programs: as one JSON object, and as CSV with the same digits.
 
-use crate::csv_text::quoted;
+use crate::format::quoted;
 use crate::provenance::{DescribedColumn, Provenance};
 use report::{Numbers, file_stem};
 use scene::AnyScene;

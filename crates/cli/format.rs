@@ -60,3 +60,18 @@ impl std::str::FromStr for Format {
         Self::named(name).ok_or_else(|| format!("accepted are csv, jsonl, npz and parquet{without}"))
     }
 }
+
+/// The header of a `.csv` file (RFC 4180) with columns of these headings.
+pub(crate) fn csv_header(headings: impl IntoIterator<Item = String>) -> String {
+    headings.into_iter().map(|heading| quoted(&heading)).collect::<Vec<_>>().join(",")
+}
+
+/// A text field of a `.csv` file. It is quoted if it contains a separator, a quote or a line break, or if a spreadsheet would read it as a formula.
+pub(crate) fn quoted(text: &str) -> String {
+    let formula = text.starts_with(['=', '+', '-', '@']) && text.parse::<f64>().is_err();
+    if formula || text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

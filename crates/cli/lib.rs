@@ -11,14 +11,11 @@ mod columns_file;
 mod command_line;
 mod compare;
 mod compare_numbers;
-mod completions;
 mod coordinate;
 mod cost;
-mod csv_text;
 mod diff;
 mod effect_keys;
 mod ensemble;
-mod equations;
 mod equilibria;
 mod error;
 mod facts;
@@ -29,7 +26,6 @@ mod format;
 mod in_memory;
 mod inspect;
 mod interrupt;
-mod job;
 mod json;
 mod list;
 mod lock;
@@ -38,14 +34,12 @@ mod notes;
 mod output;
 #[cfg(feature = "parquet")]
 mod parquet_file;
-mod part;
 mod phase;
 mod plane;
 mod plot;
 mod points_file;
 mod precision;
 mod precision_text;
-mod processor;
 mod program;
 mod progress;
 mod provenance;
@@ -53,7 +47,6 @@ mod resume;
 mod row_verdict;
 mod run;
 mod run_report;
-mod saves;
 mod section;
 mod stability;
 mod stability_map;
@@ -61,7 +54,6 @@ mod starts;
 mod substeps;
 mod table;
 mod terminal;
-mod totals;
 mod train;
 mod trigger;
 
@@ -73,7 +65,7 @@ use std::process::ExitCode;
 pub use called::{Caller, CommandOutput, ShownToCaller, call};
 pub use ensemble::{SweepPlan, plan};
 pub use in_memory::{Refusal, RunRequest, RunResult, check_times, run};
-pub use processor::{missing_instructions, wrong_processor};
+pub use program::{missing_instructions, wrong_processor};
 
 /// The program: the command of its arguments, with its exit code.
 #[must_use]
@@ -132,12 +124,12 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
         Some(Command::Merge(arguments)) => ensemble::merge(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Equations(arguments)) => equations::equations(&arguments),
+        Some(Command::Equations(arguments)) => check::equations(&arguments),
         Some(Command::List(arguments)) => list::list(&arguments),
         Some(Command::New(arguments)) => list::new(&arguments),
         Some(Command::Plot(arguments)) => plot::plot(&arguments),
         Some(Command::Diff(arguments)) => diff::diff(&arguments),
-        Some(Command::Completions { shell }) => completions::completions(shell),
-        Some(Command::Man { command }) => completions::man(command.as_deref()),
+        Some(Command::Completions { shell }) => list::completions(shell),
+        Some(Command::Man { command }) => list::man(command.as_deref()),
     }
 }

@@ -62,7 +62,7 @@ fn settle(arguments: &LyapunovArguments, analysis: &Analysis<'_>) -> f64 {
 pub(crate) fn again(arguments: &LyapunovArguments, analysis: &Analysis<'_>) -> (CommandLine, Value) {
     let settle = settle(arguments, analysis);
     let command = analysis.again().number("--settle", settle).maybe("--exponents", arguments.exponents);
-    let command = command.maybe("--energy", arguments.energy.map(|energy| format!("{energy:?}")));
+    let command = command.maybe_number("--energy", arguments.energy);
     (arguments.map.iter().fold(command, |command, range| command.with("--map", range)), json!({"settle": settle}))
 }
 

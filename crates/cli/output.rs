@@ -1,8 +1,7 @@
-use crate::csv_text;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::format::Format;
-use crate::part::PartFile;
+use crate::format::{Format, csv_header};
+use crate::lock::PartFile;
 use crate::provenance::{Provenance, label, metadata_of};
 use crate::{columns_file, terminal};
 use arrays::ArrayColumn;
@@ -115,7 +114,7 @@ impl<'a> Output<'a> {
             file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0))).map_err(|source| part.failed(source))?;
         }
         if asked.format == Format::Csv {
-            self.line = format!("{}\n", csv_text::header(self.columns.iter().map(label))).into_bytes();
+            self.line = format!("{}\n", csv_header(self.columns.iter().map(label))).into_bytes();
             self.write();
         }
         Ok(self)
@@ -130,7 +129,7 @@ impl<'a> Output<'a> {
         let there = part.len()?;
         let same = |sum: &Hasher| u64::from(sum.clone().finalize()) == checksum;
         let mut found = summed(file, bytes).map_err(unreadable)?.filter(same);
-        let old = path.exists();
+        let old = File::open(path).is_ok();
         let in_old = old && found.is_none() && {
             let mut sum = Summed(Hasher::new());
             match self.old_rows(path, bytes, &mut sum) {

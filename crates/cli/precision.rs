@@ -120,7 +120,7 @@ fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measu
     let command = CommandLine::of("precision", &arguments.scene, &arguments.set);
     let command = command.maybe("--methods", methods.as_ref().map(|methods| methods.join(",")));
     let command = command.number("--duration", measured.duration);
-    let command = command.maybe("--alpha", alpha.map(|alpha| format!("{alpha:?}"))).number("--longest", *longest);
+    let command = command.maybe_number("--alpha", *alpha).number("--longest", *longest);
     let command = with.iter().fold(command, |command, path| command.with("--with", path.display()));
     let command = command.maybe("--csv", csv.as_ref().map(|path| path.display()));
     let command = command.maybe("--report", report.as_ref().map(|path| path.display()));

@@ -1,6 +1,6 @@
 //! The results of `noslip precision`: the same values as a table, as JSON and in the report.
 
-use crate::csv_text::quoted;
+use crate::format::quoted;
 use crate::json::failure;
 use crate::precision::Measurement;
 use crate::provenance::{DescribedColumn, Provenance};

@@ -1,11 +1,12 @@
+use crate::args::CompareArguments;
 use crate::error::CliError;
-use crate::files::{check_file, place, read_text, write_whole};
+use crate::files::{check_file, check_folder, place, read_text, write_whole};
 use crate::{program, terminal};
-use dla::{Checkpoint, CheckpointError, Schedule};
-use harness::Method;
+use dla::{Checkpoint, CheckpointError, Mechanism, Schedule};
+use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
 use scene::AnyScene;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The largest checkpoint that is read (bytes): ten times the checkpoint of a train of a hundred thousand trailers.
 const LARGEST: u64 = 1 << 28;
@@ -100,4 +101,62 @@ impl<'a> Saver<'a> {
 /// Writes a checkpoint, whole or not at all, over the one before.
 fn write(path: &Path, checkpoint: &Checkpoint) -> Result<(), CliError> {
     write_whole(path, true, |file| file.write_all(checkpoint.to_text().as_bytes()))
+}
+
+/// The folders in which the runs of a comparison are saved, a checkpoint for each method, and from which they go on.
+#[derive(Debug, Default)]
+pub(crate) struct Saves {
+    to: Option<PathBuf>,
+    from: Option<PathBuf>,
+    every: u64,
+}
+
+impl Saves {
+    /// The saves that the arguments ask for. A folder that cannot be written in, or exists already, is refused before the work.
+    pub(crate) fn of(arguments: &CompareArguments) -> Result<Self, CliError> {
+        let CompareArguments { checkpoint, checkpoint_every, resume, scene, .. } = arguments;
+        // A comparison that is resumed goes on saving into its folder.
+        let checkpoint = checkpoint.as_ref().or(resume.as_ref());
+        if let Some(folder) = resume {
+            std::fs::read_dir(folder).map_err(|source| CliError::Read { path: folder.clone(), source })?;
+        }
+        if let Some(folder) = checkpoint {
+            check_folder(folder, scene.force || resume.as_ref() == Some(folder))?;
+            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
+        }
+        Ok(Self { to: checkpoint.cloned(), from: resume.clone(), every: *checkpoint_every })
+    }
+
+    /// Where to go on after an interruption.
+    pub(crate) fn folder(&self) -> Option<&Path> {
+        self.to.as_deref()
+    }
+
+    /// Makes a run of a scene: at once if nothing is to be saved, else from checkpoint to checkpoint.
+    pub(crate) fn run(
+        &self,
+        scene: &AnyScene,
+        system: &dyn Mechanism,
+        method: &Method,
+        request: &Request,
+        progress: &mut dyn Progress,
+    ) -> Result<Record, CliError> {
+        if self.to.is_none() && self.from.is_none() {
+            return Ok(harness::run(system, method, request, progress));
+        }
+        let name = format!("{}.save", method.info().name);
+        let identity = identity_of_whole(scene, method, &request.schedule);
+        let from = self.from.as_ref().map(|folder| folder.join(&name)).filter(|path| path.exists());
+        let read = from.as_ref().map(|path| read(path, &identity)).transpose()?;
+        let to = self.to.as_ref().map(|folder| folder.join(&name));
+        let mut saver = Saver::new(to.as_deref());
+        let mut save = |made: &Checkpoint| saver.save(made);
+        let every = to.as_ref().map(|_| self.every);
+        let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
+        let outcome = run_saved(system, method, request, &mut saving, None, progress);
+        let mut record = outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
+        saver.outcome()?;
+        record.wall_seconds = timed(system, method, request, record.steps, progress);
+        Ok(record)
+    }
 }

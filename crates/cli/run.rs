@@ -89,12 +89,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         terminal::print_json(&account.object(&made))?;
     } else {
         let file = out.and_then(|asked| asked.path).filter(|_| written.is_ok());
-        let text = table::one_run_of((scene.title(), scene.name()), record, &account.end(record), file)
-            + &table::derivation(record)
-            + &substeps::told(record)
-            + &system.train().map_or_else(String::new, |train| train::told(train, record))
-            + events.as_ref().map_or("", |events| &events.told);
-        let text = table::realigned(&text);
+        let mut lines = table::one_run(&scene, record, account.end(record), file);
+        lines.extend(substeps::told(record));
+        lines.extend(system.train().into_iter().flat_map(|train| train::told(train, record)));
+        lines.extend(events.iter().flat_map(|events| events.told.clone()));
+        let text = table::aligned(&lines);
         // Standard output may have the rows.
         match out {
             Some(asked) if asked.path.is_none() => terminal::tell(&text),

@@ -98,15 +98,15 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     };
     let crossed = interrupt.attend(|| progress::in_parallel("starts", starts.len(), &interrupt, cross));
     let crossed: Vec<PlaneCrossing> = crossed.into_iter().flatten().collect();
-    tell(arguments, &analysis, system, axes.map(|axis| axis.quantity), (&crossed, starts.len()))
+    tell(arguments, &analysis, system, &axes.map(|axis| axis.quantity), (&crossed, starts.len()))
 }
 
-/// Shows the crossings of those of the `starts` starts that have begun.
+/// Shows the crossings; `starts` counts the starts that were asked for.
 fn tell(
     arguments: &SectionArguments,
     analysis: &Analysis<'_>,
     system: &Built<'_>,
-    axes: [Quantity; 2],
+    axes: &[Quantity; 2],
     (crossed, starts): (&[PlaneCrossing], usize),
 ) -> Result<(), CliError> {
     let (plane, direction) = (&arguments.plane.text, arguments.direction.name());
@@ -149,7 +149,7 @@ fn tell(
             analysis.object(duration, more)
         },
         lines,
-        again: command.maybe("--energy", arguments.energy.map(|energy| format!("{energy:?}"))),
+        again: command.maybe_number("--energy", arguments.energy),
         notes: json!({"plane": plane, "direction": direction, "axes": names, "starts": arguments.starts}),
         warning: close.map(|close| format!("{}; a shorter --step samples more times", in_doubt(&close))),
         failures: crossed.iter().filter_map(failed).collect(),

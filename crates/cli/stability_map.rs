@@ -76,7 +76,7 @@ pub(crate) fn map(
     };
     let cells = interrupt.attend(|| progress::in_parallel("starts", count, &interrupt, cell));
     let map = Map { axes, cells: cells.into_iter().map(Option::flatten).collect() };
-    map.tell(arguments, analysis, quantities.map(|k| system.quantities()[k].column()))
+    map.tell(arguments, analysis, &quantities.map(|k| system.quantities()[k].column()))
 }
 
 impl Map<'_> {
@@ -93,7 +93,7 @@ impl Map<'_> {
         self.each(|value, _, _| value)
     }
 
-    fn tell(&self, arguments: &LyapunovArguments, analysis: &Analysis<'_>, axes: [Column; 2]) -> Result<(), CliError> {
+    fn tell(&self, arguments: &LyapunovArguments, analysis: &Analysis<'_>, axes: &[Column; 2]) -> Result<(), CliError> {
         let done = || self.cells.iter().flatten();
         if let Some(error) = done().find_map(|cell| if let Cell::Refused(error) = cell { Some(*error) } else { None }) {
             return Err(refused(error));

@@ -197,46 +197,38 @@ pub(crate) fn end_of_sleigh(end: &SleighState) -> Vec<(String, String)> {
     lines.map(|(name, value)| (name.to_owned(), value)).to_vec()
 }
 
-/// The result of one run of the scene `title`, `name`; `end` has the lines on the state at its end.
-pub(crate) fn one_run_of(
-    (title, name): (&str, &str),
+/// The lines of one run of a scene; `end` has the lines on the state at its end.
+pub(crate) fn one_run(
+    scene: &AnyScene,
     record: &Record,
-    end: &[(String, String)],
+    end: Vec<(String, String)>,
     out: Option<&Path>,
-) -> String {
-    let mut lines = vec![
-        ("scene", format!("{title} ({name})")),
+) -> Vec<(String, String)> {
+    /// A shorter time (s) to derive the equations is not shown.
+    const NOTICED: f64 = 0.1;
+    let (energy, newton, seconds) = (&record.energy, &record.newton, record.wall_seconds);
+    let per_step = seconds * 1e9 / record.steps.max(1) as f64;
+    let head = [
+        ("scene", format!("{} ({})", scene.title(), scene.name())),
         ("method", format!("{}, order {}", record.method.name, record.method.order)),
         ("steps", format!("{} of {} s, to t = {} s", record.steps, number(record.step), number(record.t))),
     ];
-    lines.extend(end.iter().map(|(name, value)| (name.as_str(), value.clone())));
-    lines.extend([
-        (
-            "energy",
-            format!("{} J at the start, {} J at the end", number(record.energy.initial), number(record.energy.last)),
-        ),
-        ("energy error", format!("{:.2e} J at most", record.energy.max_error)),
+    let mut rest = vec![
+        ("energy", format!("{} J at the start, {} J at the end", number(energy.initial), number(energy.last))),
+        ("energy error", format!("{:.2e} J at most", energy.max_error)),
         ("constraint", format!("{:.2e} m/s at most", record.constraint_max)),
-    ]);
-    if record.newton.max > 0 {
-        lines.push(("Newton", format!("{:.2} iterations a step, {} at most", record.newton.mean, record.newton.max)));
+    ];
+    if newton.max > 0 {
+        rest.push(("Newton", format!("{:.2} iterations a step, {} at most", newton.mean, newton.max)));
     }
-    let per_step = record.wall_seconds * 1e9 / record.steps.max(1) as f64;
-    lines.push(("time", format!("{:.3e} s, {per_step:.1} ns a step", record.wall_seconds)));
-    if let Some(path) = out {
-        lines.push(("written", path.display().to_string()));
+    rest.push(("time", format!("{seconds:.3e} s, {per_step:.1} ns a step")));
+    rest.extend(out.map(|path| ("written", path.display().to_string())));
+    if record.derivation_seconds >= NOTICED {
+        let seconds = record.derivation_seconds;
+        rest.push(("derivation", format!("{seconds:.2} s besides, of the equations of motion in a basis")));
     }
-    aligned(&lines)
-}
-
-/// The time to derive the equations; empty if it is too short to notice.
-pub(crate) fn derivation(record: &Record) -> String {
-    const NOTICED: f64 = 0.1;
-    let seconds = record.derivation_seconds;
-    if seconds < NOTICED {
-        return String::new();
-    }
-    aligned(&[("derivation", format!("{seconds:.2} s besides, of the equations of motion in a basis"))])
+    let named = |(name, value): (&str, String)| (name.to_owned(), value);
+    head.into_iter().map(named).chain(end).chain(rest.into_iter().map(named)).collect()
 }
 
 /// A number of things: `1 step`, `2 steps`.
@@ -253,16 +245,6 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
         let _ = writeln!(text, "{:<width$}  {}", name.as_ref(), value.as_ref());
     }
     text
-}
-
-/// Aligns lines from several calls of [`aligned`] in the same two columns.
-pub(crate) fn realigned(text: &str) -> String {
-    let lines: Vec<(&str, &str)> = text
-        .lines()
-        .map(|line| line.split_once("  ").unwrap_or((line, "")))
-        .map(|(a, b)| (a, b.trim_start()))
-        .collect();
-    aligned(&lines)
 }
 
 /// The error of a run that ended with a place, a velocity or an energy that is not a finite number; `None` if all are finite.

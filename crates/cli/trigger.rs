@@ -38,33 +38,13 @@ impl FromStr for Trigger {
     }
 }
 
-/// The function of a trigger, zero at the crossing.
-#[derive(Debug, Clone, Copy)]
-struct TriggerFunction {
-    value: f64,
-    /// Whether values a turn apart are the same.
-    turns: bool,
-}
-
-impl TriggerFunction {
-    /// For an angle, the sine of half the distance from the value. It has one zero in a turn, while the sine of the whole distance has two;
-    /// its sign changes from turn to turn.
-    fn of(self, number: f64) -> f64 {
-        if self.turns { (0.5 * (number - self.value)).sin() } else { number - self.value }
-    }
-
-    /// Whether the quantity rises, given whether the function does.
-    fn rises(self, number: f64, function_rises: bool) -> bool {
-        if self.turns { function_rises == ((0.5 * (number - self.value)).cos() > 0.0) } else { function_rises }
-    }
-}
-
-/// A trigger with the quantity that it names in a system.
+/// A trigger with the quantity that it names in a system, and a function that is zero at the crossing.
 #[derive(Debug)]
 pub(crate) struct WatchedTrigger<'a> {
     trigger: &'a Trigger,
     quantity: Coordinate,
-    function: TriggerFunction,
+    /// Whether values a turn apart are the same.
+    turns: bool,
 }
 
 impl Trigger {
@@ -89,7 +69,7 @@ impl Trigger {
                 self.value,
             )));
         };
-        Ok(WatchedTrigger { trigger: self, quantity, function: TriggerFunction { value: self.value, turns } })
+        Ok(WatchedTrigger { trigger: self, quantity, turns })
     }
 }
 
@@ -99,21 +79,31 @@ impl WatchedTrigger<'_> {
         &self.trigger.text
     }
 
+    /// The distance from the value; of an angle, the sine of half of it, which has one zero in a turn (the sine of the whole distance has
+    /// two), and whose sign changes from turn to turn.
+    fn value(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        let off = self.quantity.value(system, t, q, v) - self.trigger.value;
+        if self.turns { (0.5 * off).sin() } else { off }
+    }
+
+    /// Whether the quantity rises, given whether the function does.
+    fn rises(&self, system: &Built<'_>, t: f64, (q, v): (&[f64], &[f64]), function_rises: bool) -> bool {
+        let off = || self.quantity.value(system, t, q, v) - self.trigger.value;
+        if self.turns { function_rises == ((0.5 * off()).cos() > 0.0) } else { function_rises }
+    }
+
     /// The event in a system.
     pub(crate) fn event<'a>(&'a self, system: &'a Built<'a>) -> Event<'a> {
-        let of = move |t, q: &[f64], v: &[f64]| self.function.of(self.quantity.value(system, t, q, v));
-        let event = Event::new(self.trigger.text.clone(), of);
+        let event = Event::new(self.trigger.text.clone(), |t, q: &[f64], v: &[f64]| self.value(system, t, q, v));
         let Some(wanted) = self.trigger.rising else { return event };
-        event.where_true(move |t, q, v, rising| {
-            self.function.rises(self.quantity.value(system, t, q, v), rising) == wanted
-        })
+        event.where_true(move |t, q, v, rising| self.rises(system, t, (q, v), rising) == wanted)
     }
 }
 
 /// The events of a run, for a program and for a person.
 pub(crate) struct Events {
     values: Vec<Value>,
-    pub(crate) told: String,
+    pub(crate) told: Vec<(String, String)>,
     close: Option<Close>,
 }
 
@@ -125,14 +115,12 @@ impl Events {
         crossings: &[SavedCrossing],
         close: Option<Close>,
     ) -> Self {
-        let (mut values, mut told) = (Vec::new(), String::new());
+        let (mut values, mut told) = (Vec::new(), Vec::new());
         for SavedCrossing { event, t, within, spacing, rising, q, v } in crossings {
-            let Some(WatchedTrigger { trigger: Trigger { text, .. }, quantity, function }) = watched.get(*event) else {
-                continue;
-            };
-            let rising = function.rises(quantity.value(system, *t, q, v), *rising);
+            let Some(watched) = watched.get(*event) else { continue };
+            let (text, rising) = (watched.text(), watched.rises(system, *t, (q, v), *rising));
             let how = if rising { "rising" } else { "falling" };
-            told += &format!("event      {text}, {how}, at t = {} s\n", number(*t));
+            told.push(("event".to_owned(), format!("{text}, {how}, at t = {} s", number(*t))));
             let mut value = json!({"event": text, "t": t, "within": within, "spacing": spacing, "rising": rising});
             for (quantity, number) in system.state(*t, q, v) {
                 value[quantity.name] = json!(number);

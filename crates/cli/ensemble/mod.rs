@@ -17,7 +17,7 @@ use crate::file_roles::FileRoles;
 use crate::files::check_file;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
-use crate::part::PartFile;
+use crate::lock::PartFile;
 use crate::{inspect, program, progress, terminal};
 use about::About;
 use dla::Checkpoint;

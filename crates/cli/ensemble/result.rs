@@ -1,8 +1,7 @@
 use super::rows::{SpoolRows, numbers_of, parsed};
-use crate::csv_text;
 use crate::error::CliError;
 use crate::files::{as_written, write_whole};
-use crate::format::Format;
+use crate::format::{Format, csv_header};
 use crate::output::in_arrays;
 use crate::provenance::{label, metadata_of};
 use scene::Column;
@@ -51,7 +50,7 @@ fn content<'a>(
     let Shape { format, columns, count, metadata } = *shape;
     match format {
         Format::Csv => {
-            writeln!(file, "{},error", csv_text::header(columns.iter().map(label)))?;
+            writeln!(file, "{},error", csv_header(columns.iter().map(label)))?;
             let mut rows = rows()?;
             while let Some(row) = rows.next()? {
                 writeln!(file, "{row}")?;

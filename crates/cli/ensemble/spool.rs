@@ -2,7 +2,7 @@ use super::result::Shape;
 use super::rows::{Damage, Lines, Source, SpoolRows};
 use crate::error::CliError;
 use crate::files::check_file;
-use crate::part::PartFile;
+use crate::lock::PartFile;
 use crate::terminal;
 use std::io::{BufRead, BufReader, Error, Seek, SeekFrom, Write};
 use std::ops::Range;
