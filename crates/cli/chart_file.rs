@@ -3,7 +3,7 @@ use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::format::csv_header;
-use crate::provenance::{Provenance, label, metadata_of};
+use crate::provenance::{Provenance, described, label, metadata_of};
 use report::{Chart, chart_svg};
 use scene::Column;
 use std::io::Write;
@@ -56,7 +56,7 @@ impl<'a> ChartFile<'a> {
                     }
                     Ok(())
                 })?;
-                provenance.write_beside(path, columns)
+                provenance.write_beside(path, &described(columns))
             }
             Self::Svg(path) => write_whole(path, overwrite, |file| file.write_all(chart_svg(&chart()).as_bytes())),
         }

@@ -136,7 +136,7 @@ pub(crate) fn compare_scene(
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
         facts: facts::of(scene)?,
-        columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
+        columns: table::headings().map(str::to_owned).to_vec(),
         rows: rows.iter().map(|row| row.cells.clone()).collect(),
         series,
         exact_path,

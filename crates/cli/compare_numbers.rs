@@ -1,7 +1,7 @@
 //! The numbers of a comparison for programs: as one JSON object, and as CSV with the same digits.
 
 use crate::format::quoted;
-use crate::provenance::{DescribedColumn, Provenance};
+use crate::provenance::{Provenance, headed};
 use report::{Numbers, file_stem};
 use scene::AnyScene;
 use serde_json::{Value, json};
@@ -56,8 +56,8 @@ pub(crate) fn files(scene: &AnyScene, rows: &[&Value], interrupted: Option<&str>
     let name = scene.name();
     let text = format!("{:#}\n", json(name, rows, interrupted.is_some()));
     let provenance = Provenance::on(scene, None, json!({})).interrupted(interrupted);
-    let described = columns().map(|(heading, _, datatype)| DescribedColumn::headed(heading, datatype));
-    let metadata = provenance.document(&format!("{}.csv", file_stem(name)), described);
+    let described: Vec<Value> = columns().map(|(heading, _, datatype)| headed(heading, datatype)).collect();
+    let metadata = provenance.document(&format!("{}.csv", file_stem(name)), &described);
     vec![
         Numbers { ending: "csv", text: csv(rows) },
         Numbers { ending: "csv-metadata.json", text: metadata },

@@ -1,6 +1,9 @@
 use crate::error::CliError;
 use crate::files::check_file;
 use crate::provenance::metadata_of;
+use arrays::ArrayColumn;
+use scene::Column;
+use std::io::{Error, Seek, Write};
 use std::path::Path;
 
 /// The formats in which rows of numbers are written.
@@ -38,6 +41,27 @@ impl Format {
             #[cfg(feature = "parquet")]
             "parquet" => Some(Self::Parquet),
             _ => None,
+        }
+    }
+
+    /// Writes `count` rows of numbers in a format that is no text, with a document that describes them; all rows need not be in memory at
+    /// once.
+    pub(crate) fn write_numbers(
+        self,
+        file: &mut (impl Write + Seek + Send),
+        columns: &[Column],
+        (count, document): (u64, &str),
+        mut rows: impl Iterator<Item = Result<Vec<f64>, Error>>,
+    ) -> Result<(), Error> {
+        match self {
+            Self::Npz => {
+                let entries = columns.iter().map(|Column { name, whole, .. }| ArrayColumn { name, whole: *whole });
+                let entries: Vec<_> = entries.collect();
+                arrays::write(file, &entries, count, document, |push| rows.try_for_each(|row| push(&row?)))
+            }
+            #[cfg(feature = "parquet")]
+            Self::Parquet => crate::parquet_file::write(file, columns, document, rows),
+            Self::Csv | Self::Jsonl => Ok(()),
         }
     }
 

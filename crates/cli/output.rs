@@ -2,9 +2,8 @@ use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use crate::format::{Format, csv_header};
 use crate::lock::PartFile;
-use crate::provenance::{Provenance, label, metadata_of};
+use crate::provenance::{Provenance, described, label, metadata_of};
 use crate::{columns_file, terminal};
-use arrays::ArrayColumn;
 use crc32fast::Hasher;
 use scene::Column;
 use std::fs::File;
@@ -280,21 +279,17 @@ impl<'a> Output<'a> {
             part.file().sync_all().map_err(|source| part.failed(source))?;
             // The metadata comes first, so that rows never lack it.
             check_file(path, overwrite)?;
-            provenance.write_beside(path, &self.columns)?;
+            provenance.write_beside(path, &described(&self.columns))?;
             return part.becomes(path, overwrite).inspect_err(|_| {
                 let _ = std::fs::remove_file(metadata_of(path));
             });
         }
-        let document = provenance.document(&path.file_name().unwrap_or_default().to_string_lossy(), &self.columns);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let document = provenance.document(&name, &described(&self.columns));
         let width = 8 * self.columns.len();
         let rows = self.bytes.checked_div(width as u64).unwrap_or(0);
-        write_whole(path, overwrite, |file| match self.asked.format {
-            Format::Npz => arrays::write(file, &in_arrays(&self.columns), rows, &document, |push| {
-                numbers(part.file(), width)?.try_for_each(|row| push(&row?))
-            }),
-            #[cfg(feature = "parquet")]
-            Format::Parquet => crate::parquet_file::write(file, &self.columns, &document, numbers(part.file(), width)?),
-            Format::Csv | Format::Jsonl => Ok(()),
+        write_whole(path, overwrite, |file| {
+            self.asked.format.write_numbers(file, &self.columns, (rows, &document), numbers(part.file(), width)?)
         })?;
         // Rows that a run goes on from are kept.
         if !(checkpoint && interrupted) {
@@ -335,9 +330,4 @@ fn numbers(mut file: &File, width: usize) -> Result<impl Iterator<Item = Result<
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => None,
         Err(error) => Some(Err(error)),
     }))
-}
-
-/// The columns as entries of an archive of arrays.
-pub(crate) fn in_arrays(columns: &[Column]) -> Vec<ArrayColumn<'_>> {
-    columns.iter().map(|column| ArrayColumn { name: &column.name, whole: column.whole }).collect()
 }

@@ -84,7 +84,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     if let Some(path) = &arguments.csv {
         let text = precision_text::csv(&measured.curves);
         files::write_whole(path, arguments.force, |file| std::io::Write::write_all(file, text.as_bytes()))?;
-        provenance.write_beside(path, precision_text::described())?;
+        provenance.write_beside(path, &precision_text::described())?;
     }
     if let Some(folder) = &folder {
         let report = precision_text::report(&scene, &measured, &provenance);

@@ -3,7 +3,7 @@
 use crate::format::quoted;
 use crate::json::failure;
 use crate::precision::Measurement;
-use crate::provenance::{DescribedColumn, Provenance};
+use crate::provenance::{Provenance, headed};
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, seconds_to};
 use report::{CostCurve, CostPoint, Numbers, Report, SceneReport, Table, file_stem};
@@ -31,12 +31,22 @@ fn shown(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), number)
 }
 
+/// Step, tolerance, steps, error, times and spread of a point; `missing` stands for a number that the point does not have.
+fn fields(point: &PrecisionPoint, missing: &str, number: fn(f64) -> String) -> [String; 7] {
+    let shown = |value: Option<f64>| value.map_or_else(|| missing.to_owned(), number);
+    let [step, tolerance] = match point.setting {
+        Some(RungSetting::Step(step)) => [Some(step), None],
+        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
+        None => [None, None],
+    };
+    let steps = point.steps.map_or_else(|| missing.to_owned(), |steps| steps.to_string());
+    let [error, wall, cpu, spread] = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(shown);
+    [shown(step), shown(tolerance), steps, error, wall, cpu, spread]
+}
+
 /// A row of the table of points, and what follows it.
 fn cells(curve: &Curve, point: &PrecisionPoint) -> (Vec<String>, String) {
-    let [step, tolerance] = settings(point);
-    let steps = point.steps.map_or_else(|| "-".to_owned(), |steps| steps.to_string());
-    let numbers = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(shown);
-    let cells = [curve.label(), shown(step), shown(tolerance), steps].into_iter().chain(numbers).collect();
+    let cells = std::iter::once(curve.label()).chain(fields(point, "-", number)).collect();
     let mark = point.mark.as_ref().map(ToString::to_string);
     let notes: Vec<String> = point.pareto.then(|| "pareto".to_owned()).into_iter().chain(mark).collect();
     (cells, notes.join(", "))
@@ -229,40 +239,21 @@ const FILE: [(&str, &str); 11] = [
 ];
 
 /// The columns, for the file of metadata.
-pub(crate) fn described() -> impl Iterator<Item = DescribedColumn> {
-    FILE.iter().map(|(heading, datatype)| DescribedColumn::headed(heading, datatype))
+pub(crate) fn described() -> Vec<Value> {
+    FILE.iter().map(|(heading, datatype)| headed(heading, datatype)).collect()
 }
 
-/// The points, one on a line.
+/// The points, one on a line, with all digits.
 pub(crate) fn csv(curves: &[Curve]) -> String {
     let mut text = FILE.map(|(heading, _)| heading).join(",") + "\n";
-    let some = |value: Option<f64>| value.map_or_else(String::new, number);
     for (_, point) in points(curves) {
-        let [step, tolerance] = settings(point).map(some);
-        let steps = point.steps.map_or_else(String::new, |steps| steps.to_string());
-        let [error, wall, cpu, spread] = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(some);
-        let [method, mark, source] = [
-            point.method.clone(),
-            point.mark.as_ref().map_or_else(String::new, ToString::to_string),
-            point.source.clone().unwrap_or_default(),
-        ]
-        .map(|text| quoted(&text));
-        let pareto = point.pareto;
-        let _ = writeln!(
-            text,
-            "{method},{step},{tolerance},{steps},{error},{wall},{cpu},{spread},{mark},{pareto},{source}"
-        );
+        let mark = point.mark.as_ref().map_or_else(String::new, ToString::to_string);
+        let source = point.source.as_deref().unwrap_or_default();
+        let numbers = fields(point, "", harness::precision::number).join(",");
+        let (method, mark, pareto) = (quoted(&point.method), quoted(&mark), point.pareto);
+        let _ = writeln!(text, "{method},{numbers},{mark},{pareto},{}", quoted(source));
     }
     text
-}
-
-/// Step and tolerance, one of which a point has.
-fn settings(point: &PrecisionPoint) -> [Option<f64>; 2] {
-    match point.setting {
-        Some(RungSetting::Step(step)) => [Some(step), None],
-        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
-        None => [None, None],
-    }
 }
 
 fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &PrecisionPoint)> {
@@ -316,7 +307,7 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Prov
         costs: Some(measured.curves.iter().map(drawn).collect()),
         numbers: vec![
             Numbers { ending: "csv", text: csv(&measured.curves) },
-            Numbers { ending: "csv-metadata.json", text: provenance.document(&file, described()) },
+            Numbers { ending: "csv-metadata.json", text: provenance.document(&file, &described()) },
             Numbers { ending: "json", text: format!("{:#}\n", json(scene, measured)) },
         ],
         ..SceneReport::default()
