@@ -6,7 +6,7 @@ use crate::command_line::CommandLine;
 use crate::error::{CliError, unless_interrupted};
 use crate::provenance::Provenance;
 use crate::starts::with_energy;
-use crate::{inspect, notes, table, terminal};
+use crate::{inspect, table, terminal};
 use harness::Method;
 use report::Chart;
 use scene::{AnyScene, Built, BuiltScene, Column, StartPlace};
@@ -56,7 +56,7 @@ impl<'a> Analysis<'a> {
     pub(crate) fn begin(&mut self, out: Option<&'a Path>) -> Result<BuiltScene, CliError> {
         let SceneArguments { scene, force, .. } = self.arguments;
         self.file = out.map(|path| ChartFile::of(path, scene, *force)).transpose()?;
-        notes::moves(&self.scene);
+        inspect::moves(&self.scene);
         let built = self.scene.built_for_analysis()?;
         if built.system().imposes_velocities() {
             let problem =

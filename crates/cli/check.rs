@@ -4,7 +4,7 @@ use crate::args::{CheckArguments, EquationsArguments};
 use crate::error::CliError;
 use crate::facts::described;
 use crate::inspect::method_names;
-use crate::{notes, table, terminal};
+use crate::{inspect, table, terminal};
 use scene::AnyScene;
 use serde_json::{Map, Value, json};
 
@@ -77,7 +77,7 @@ pub(crate) fn equations(arguments: &EquationsArguments) -> Result<(), CliError> 
             "{name} is a sleigh, whose equations are on the page `scenes` of the documentation; accepted is a system of text"
         )));
     };
-    notes::moves(&scene);
+    inspect::moves(&scene);
     let Some(written) = text.model.written_equations(&text.start) else {
         return Err(CliError::Computation(vec![format!(
             "{}: the reduced equations are too large to be written",

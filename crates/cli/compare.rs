@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::resume::Saves;
 use crate::table::ComparisonRow;
-use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
+use crate::{account, compare_numbers, facts, inspect, json, progress, table, terminal, train};
 use dla::{AnyState, Schedule};
 use harness::{Drift, DriftVerdict, Method, Progress, Record, Request};
 use report::{HEADINGS, Report, SceneReport, Series};
@@ -75,7 +75,7 @@ pub(crate) fn compare_scene(
     saves: &Saves,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
-    notes::moves(scene);
+    inspect::moves(scene);
     let built = scene.built()?;
     let (system, q, v) = (&built.system(), &built.q, &built.v);
     let samples = (MOST_NUMBERS / 32 / q.len().max(1) as u64).clamp(2, 1000);
@@ -101,7 +101,7 @@ pub(crate) fn compare_scene(
         records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
     let (mut rows, mut series) = (Vec::new(), Vec::new());
     for record in &records {
-        notes::warn_of_jumps(record);
+        inspect::warn_of_jumps(record);
         let whole = Some(record).filter(|record| record.is_whole());
         let there = whole.and_then(|record| reference.at(record.t));
         let error = there.map(|end| system.distance(&record.q, &end));

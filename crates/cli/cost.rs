@@ -1,6 +1,6 @@
 use crate::args::SceneArguments;
 use crate::error::CliError;
-use crate::{inspect, notes, table, terminal};
+use crate::{inspect, table, terminal};
 use dla::Schedule;
 use harness::{step_evaluations, step_time};
 use scene::{AnyScene, Scene, SceneEffect, TextScene};
@@ -23,7 +23,7 @@ type Part = (Vec<&'static str>, AnyScene);
 /// forces.
 pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     let scene = inspect::load(arguments, None)?;
-    notes::moves(&scene);
+    inspect::moves(&scene);
     let (parts, operations) = match &scene {
         AnyScene::Sleigh(scene) => (with_effects(scene), None),
         AnyScene::Text(scene) => (with_forces(scene)?, Some(scene.model.operations())),

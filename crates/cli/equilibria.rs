@@ -1,7 +1,7 @@
 use crate::args::EquilibriaArguments;
 use crate::chart_file::{check_picture, write_picture};
 use crate::error::CliError;
-use crate::{inspect, notes, table, terminal};
+use crate::{inspect, table, terminal};
 use dla::Trajectory;
 use harness::analysis::{
     DiscreteMap, Equilibrium, EquilibriumError, MapError, StepLimit, has_map, relative_equilibria,
@@ -29,7 +29,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         return Err(CliError::Request(problem.to_owned()));
     }
     check_picture(picture, shared)?;
-    notes::moves(&scene);
+    inspect::moves(&scene);
     let built = scene.built_for_analysis()?;
     let (system, h) = (built.system(), scene.run().actual_step());
     let mechanism = system.mechanism();

@@ -1,7 +1,7 @@
 //! Descriptions of scenes for a person: names and values.
 
 use crate::error::CliError;
-use crate::notes;
+use crate::inspect;
 use crate::table::{counted, number};
 use scene::{
     AnyScene, BuildError, BuiltScene, Interpolation, PathShape, PathSpec, Quantity, Scene, SceneEffect, TextModel,
@@ -19,7 +19,7 @@ pub(crate) fn of(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
 
 /// The same with its method, for `noslip check`.
 pub(crate) fn described(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
-    notes::moves(scene);
+    inspect::moves(scene);
     let mut facts = of(scene)?;
     facts.push(("method".to_owned(), scene.run().method.clone()));
     Ok(facts)

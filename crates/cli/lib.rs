@@ -30,7 +30,6 @@ mod json;
 mod list;
 mod lock;
 mod lyapunov;
-mod notes;
 mod output;
 #[cfg(feature = "parquet")]
 mod parquet_file;

@@ -7,7 +7,7 @@ use crate::files::ClaimedFolder;
 use crate::inspect::{listed, methods};
 use crate::interrupt::Interrupt;
 use crate::provenance::{Provenance, metadata_of};
-use crate::{facts, files, inspect, notes, points_file, precision_text, progress, terminal};
+use crate::{facts, files, inspect, points_file, precision_text, progress, terminal};
 use harness::Method;
 use harness::precision::{
     Bench, Clock, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
@@ -146,7 +146,7 @@ pub(crate) fn measure(
     chosen: bool,
     interrupt: &Interrupt,
 ) -> Result<Measurement, CliError> {
-    notes::moves(scene);
+    inspect::moves(scene);
     let built = scene.built()?;
     let (system, q, v) = (built.system(), &built.q, &built.v);
     let apart = |a: &[f64], b: &[f64]| system.distance(a, b);

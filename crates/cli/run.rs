@@ -8,7 +8,7 @@ use crate::interrupt::Interrupt;
 use crate::output::{Output, OutputRequest};
 use crate::provenance::Provenance;
 use crate::trigger::Events;
-use crate::{inspect, notes, progress, resume, substeps, table, terminal, train};
+use crate::{inspect, progress, resume, substeps, table, terminal, train};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
 use harness::{METHODS, MethodKind, Progress, Saving, run_saved_watched};
 use scene::{AnyScene, Built};
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} ignores --alpha"));
     }
-    notes::moves(&scene);
+    inspect::moves(&scene);
     let built = scene.built()?;
     let system = built.system();
     let (checkpoint, resumed) = (arguments.saves().map(|(path, _)| path), arguments.resume.as_deref());
@@ -101,7 +101,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         }
     }
     events.iter().for_each(Events::warn);
-    notes::warn_of_jumps(record);
+    inspect::warn_of_jumps(record);
     let computed = CliError::of_failures(substeps::failure(record).or_else(|| table::not_finite(record)));
     if let (Err(_), Err(error)) = (&computed, &written) {
         terminal::say("error", error);
