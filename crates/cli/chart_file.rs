@@ -1,7 +1,7 @@
 use crate::args::SceneArguments;
 use crate::error::CliError;
 use crate::file_roles::FileRoles;
-use crate::files::{check_file, write_whole};
+use crate::files::{check_file, ending, write_whole};
 use crate::format::csv_header;
 use crate::provenance::{Provenance, described, label, metadata_of};
 use report::{Chart, chart_svg};
@@ -20,10 +20,9 @@ impl<'a> ChartFile<'a> {
     /// Chooses the format by the ending of `path`. Fails, before the work begins, if the file could not be written.
     pub(crate) fn of(path: &'a Path, scene: &str, overwrite: bool) -> Result<Self, CliError> {
         FileRoles::of(scene).rows("--out", Some(path)).check()?;
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        let file = match ending.as_deref() {
-            Some("csv") => Self::Csv(path),
-            Some("svg") => Self::Svg(path),
+        let file = match ending(path).as_str() {
+            "csv" => Self::Csv(path),
+            "svg" => Self::Svg(path),
             _ => return Err(CliError::ChartEnding { path: path.to_owned() }),
         };
         check_file(path, overwrite)?;

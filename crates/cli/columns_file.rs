@@ -1,6 +1,7 @@
 //! Reads files of columns of numbers back.
 
 use crate::error::CliError;
+use crate::files::ending;
 use crate::format::Format;
 use crate::provenance::named;
 use scene::Column;
@@ -22,15 +23,14 @@ pub(crate) type Columns = Vec<NamedColumn>;
 
 /// Reads a file, by the ending of its name.
 pub(crate) fn read(path: &Path) -> Result<Columns, CliError> {
-    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
     // A device might never end.
     if path.metadata().is_ok_and(|found| !found.is_file()) {
         let source = Error::new(ErrorKind::InvalidInput, "the path is not a regular file");
         return Err(CliError::Read { path: path.to_owned(), source });
     }
-    let columns = match ending.as_ref().and_then(|ending| ending.to_str()) {
-        Some("csv") => csv(path),
-        Some("npz") => npz(path),
+    let columns = match ending(path).as_str() {
+        "csv" => csv(path),
+        "npz" => npz(path),
         _ => {
             let problem = "accepted is a file .csv or .npz, by the ending of its name";
             return Err(CliError::Request(format!("{}: {problem}", path.display())));

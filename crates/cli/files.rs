@@ -182,6 +182,11 @@ fn parent(path: &Path) -> PathBuf {
     }
 }
 
+/// The ending of the name of a file, in small letters; empty if the name has none.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().map_or_else(String::new, |ending| ending.to_string_lossy().to_lowercase())
+}
+
 /// The name that a file has while it is written.
 pub(crate) fn new_of(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();

@@ -1,5 +1,5 @@
 use crate::error::CliError;
-use crate::files::check_file;
+use crate::files::{check_file, ending};
 use crate::provenance::metadata_of;
 use arrays::ArrayColumn;
 use scene::Column;
@@ -25,11 +25,10 @@ impl Format {
         if let Some(format) = asked {
             return Ok(format);
         }
-        let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
-        match ending.as_ref().and_then(|ending| ending.to_str()) {
+        match ending(path).as_str() {
             #[cfg(not(feature = "parquet"))]
-            Some("parquet") => Err(CliError::WithoutParquet { path: path.to_owned() }),
-            ending => ending.and_then(Self::named).ok_or_else(|| CliError::Ending { path: path.to_owned() }),
+            "parquet" => Err(CliError::WithoutParquet { path: path.to_owned() }),
+            ending => Self::named(ending).ok_or_else(|| CliError::Ending { path: path.to_owned() }),
         }
     }
 

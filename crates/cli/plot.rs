@@ -24,12 +24,8 @@ const PATH: &str = "path";
 pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
     let PlotArguments { input, columns, size: Size(size), dpi, force, .. } = arguments;
     let path = scene::path_of(input);
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let file = matches!(ending.as_deref(), Some("csv" | "npz")).then_some(path.as_path());
-    let scene = match file {
-        Some(_) => None,
-        None => Some(load(arguments)?),
-    };
+    let file = matches!(files::ending(&path).as_str(), "csv" | "npz").then_some(path.as_path());
+    let scene = if file.is_some() { None } else { Some(load(arguments)?) };
     let name = scene.as_ref().map_or_else(|| stem(input), |scene| scene.name().to_owned());
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.svg")));
     let format = format_of(&out)?;
@@ -78,18 +74,13 @@ fn stem(path: &str) -> String {
 }
 
 fn format_of(path: &Path) -> Result<FigureFormat, CliError> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("svg") => Ok(FigureFormat::Svg),
-        Some("png") => Ok(FigureFormat::Png),
-        Some("pdf") => Ok(FigureFormat::Pdf),
+    match files::ending(path).as_str() {
+        "svg" => Ok(FigureFormat::Svg),
+        "png" => Ok(FigureFormat::Png),
+        "pdf" => Ok(FigureFormat::Pdf),
         _ => {
-            let problem = format!(
-                "{}: a picture is written as .svg, .png or .pdf, by the ending of the \
-                name",
-                path.display()
-            );
-            Err(CliError::Request(problem))
+            let problem = "a picture is written as .svg, .png or .pdf, by the ending of the name";
+            Err(CliError::Request(format!("{}: {problem}", path.display())))
         }
     }
 }

@@ -14,11 +14,8 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let Some(folder) = &arguments.report else { return crate::run::run(arguments) };
     let shared = &arguments.scene;
     if shared.scene == "-" {
-        return Err(CliError::Request(
-            "--report reads the scene twice, and the standard input can be read only \
-            once"
-                .to_owned(),
-        ));
+        let problem = "--report reads the scene twice, and the standard input can be read only once";
+        return Err(CliError::Request(problem.to_owned()));
     }
     let folder = ClaimedFolder::new(folder, shared.force)?;
     let scene = inspect::load(shared, arguments.method.as_deref())?;

@@ -15,8 +15,8 @@ use crate::{precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
 use report::Report;
 use scene::AnyScene;
+use serde_json::Value;
 use std::path::Path;
-use words::Answers;
 
 /// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
 /// can lose some.
@@ -49,8 +49,8 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let methods = methods(&METHODS, None, None)?;
     let interrupt = Interrupt::listen();
     let Comparison { rows, mut report, interrupted } = compare_scene(&scene, &methods, &Saves::default(), &interrupt)?;
-    let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
-    let mut sentences = words::sentences(&answers);
+    let objects: Vec<&Value> = rows.iter().map(|row| &row.json).collect();
+    let mut sentences = words::sentences(&objects);
     if interrupted.is_none() {
         let mut motion = scene.clone();
         motion.run_mut().duration = MOTION;
@@ -60,7 +60,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
         sentences.push(words::prices(&prices, MOTION));
     }
     let heading = words::heading(&scene);
-    let cells: Vec<Vec<String>> = answers.iter().map(Answers::cells).collect();
+    let cells: Vec<Vec<String>> = objects.into_iter().map(words::cells).collect();
     terminal::print(&format!("{heading}\n\n{}\n", table::left_aligned(&words::COLUMNS, &cells)))?;
     for sentence in &sentences {
         terminal::print(&words::wrapped(sentence))?;
