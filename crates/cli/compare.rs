@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::resume::Saves;
 use crate::table::ComparisonRow;
-use crate::{account, compare_numbers, facts, inspect, json, progress, table, terminal, train};
+use crate::{account, facts, inspect, json, progress, table, terminal, train};
 use dla::{AnyState, Schedule};
 use harness::{Drift, DriftVerdict, Method, Progress, Record, Request};
 use report::{HEADINGS, Report, SceneReport, Series};
@@ -52,7 +52,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     }
     if arguments.scene.json {
         let rows: Vec<_> = comparison.rows.iter().map(|row| &row.json).collect();
-        let object = compare_numbers::json(scene.name(), &rows, comparison.interrupted.is_some());
+        let object = json::comparison(scene.name(), &rows, comparison.interrupted.is_some());
         terminal::print_json(&object)?;
     } else {
         comparison.print(&scene)?;
@@ -140,7 +140,7 @@ pub(crate) fn compare_scene(
         rows: rows.iter().map(|row| row.cells.clone()).collect(),
         series,
         exact_path,
-        numbers: compare_numbers::files(scene, &objects, interrupted.as_deref()),
+        numbers: json::files(scene, &objects, interrupted.as_deref()),
         ..SceneReport::default()
     };
     Ok(Comparison { rows, report, interrupted })

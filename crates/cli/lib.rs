@@ -10,7 +10,6 @@ mod check;
 mod columns_file;
 mod command_line;
 mod compare;
-mod compare_numbers;
 mod coordinate;
 mod cost;
 mod diff;

@@ -74,8 +74,8 @@ impl Lines {
         format!("{} {text}\n", self.checksum(&text))
     }
 
-    /// Checks that a line is the row of `member`, and returns its text as the `.csv` has it.
-    pub(super) fn row<'l>(&self, line: &'l [u8], member: u64) -> Result<&'l str, Damage> {
+    /// Checks that a line is the row of `member`, which is before `end`, and returns its text as the `.csv` has it.
+    pub(super) fn row<'l>(&self, line: &'l [u8], member: u64, end: u64) -> Result<&'l str, Damage> {
         let line = line.strip_suffix(b"\n").ok_or(Damage::Cut)?;
         let (sum, text) = std::str::from_utf8(line).ok().and_then(|l| l.split_once(' ')).ok_or(Damage::Checksum)?;
         if sum != self.checksum(text) {
@@ -87,7 +87,11 @@ impl Lines {
         }
         let found = numbers(text).0.split(',').count();
         let expected = self.numbers;
-        if found == expected { Ok(text) } else { Err(Damage::Numbers { found, expected }) }
+        match found == expected {
+            true if member < end => Ok(text),
+            true => Err(Damage::Member(member.to_string())),
+            false => Err(Damage::Numbers { found, expected }),
+        }
     }
 }
 
@@ -167,11 +171,7 @@ impl<'a> SpoolRows<'a> {
         }
         let member = self.next;
         self.next += 1;
-        match self.lines.row(&self.line, member) {
-            Ok(_) if member >= self.end => Err(self.damaged(&Damage::Member(member.to_string()))),
-            Ok(text) => Ok(Some(text)),
-            Err(damage) => Err(self.damaged(&damage)),
-        }
+        self.lines.row(&self.line, member, self.end).map(Some).map_err(|damage| self.damaged(&damage))
     }
 
     fn open(&mut self, source: Source) -> Result<(), Error> {

@@ -116,12 +116,10 @@ impl Spool {
             if reader.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
                 break None;
             }
-            let text = match self.lines.row(&line, rows) {
-                Ok(text) if rows < members => text,
-                Ok(_) => break Some(Damage::Member(rows.to_string())),
+            match self.lines.row(&line, rows, members) {
+                Ok(text) => seen(text),
                 Err(damage) => break Some(damage),
-            };
-            seen(text);
+            }
             (whole, rows) = (whole + line.len() as u64, rows + 1);
         };
         drop(reader);
