@@ -2,12 +2,12 @@
 
 use crate::error::CliError;
 use crate::table::number;
-use crate::trigger::{Events, Happened, Trigger, WatchedTrigger};
+use crate::trigger::{Events, Trigger, WatchedTrigger};
 use crate::{json, substeps, train};
 use dla::{Close, Event, Node, Observer, Schedule, fitted};
 use harness::{Method, Progress, Record, Request, Run, SavedCrossing};
-use scene::{AnyScene, Built, RunSettings};
-use serde_json::{Map, Value, json};
+use scene::{AnyScene, Built};
+use serde_json::{Value, json};
 
 /// A run to be made.
 pub(crate) struct Account<'a> {
@@ -45,7 +45,8 @@ impl<'a> Account<'a> {
         let mut schedule = scene.schedule();
         if backward {
             let run = scene.run();
-            schedule = self::backward(run, system.mechanism().jump_times(-run.duration, 0.0));
+            let whole = Schedule { t0: 0.0, step: -run.actual_step(), steps: run.steps() };
+            schedule = fitted(&whole, run.step, system.mechanism().jump_times(-run.duration, 0.0));
         }
         if backward && tolerance.is_some() && !method.is_adaptive() {
             let problem = "--tolerance chooses no step for a run backward in time: give --step";
@@ -88,8 +89,7 @@ impl<'a> Account<'a> {
 
     /// The events found, in words and numbers; `None` if no event is looked for.
     pub(crate) fn happened(&self, crossings: &[SavedCrossing], close: Option<Close>) -> Option<Events> {
-        let happened = crossings.iter().filter_map(|crossing| Happened::of(self.system, &self.watched, crossing));
-        (!self.watched.is_empty()).then(|| Events::new(happened, close))
+        (!self.watched.is_empty()).then(|| Events::of(self.system, &self.watched, crossings, close))
     }
 
     /// Makes the run, and searches each step for events in `samples` parts.
@@ -120,28 +120,17 @@ impl<'a> Account<'a> {
         if let Some(system) = self.system.sleigh() {
             return crate::table::end_of_sleigh(&system.sleigh_state(&record.q, &record.v));
         }
-        numbers(self.system, record.t, &record.q, &record.v)
+        let line = |value: f64, unit: &str| format!("{} {unit}", number(value)).trim_end().to_owned();
+        let state = self.system.state(record.t, &record.q, &record.v).into_iter();
+        state.map(|(quantity, value)| (quantity.name, line(value, &quantity.unit))).collect()
     }
-}
-
-/// The steps of a run from time zero backward, with these jumps (s).
-fn backward(run: &RunSettings, jumps: Vec<f64>) -> Schedule {
-    let whole = Schedule { t0: 0.0, step: -run.actual_step(), steps: run.steps() };
-    fitted(&whole, run.step, jumps)
 }
 
 /// Where a run ends, by name.
 pub(crate) fn state(system: &Built<'_>, record: &Record) -> Value {
-    let mut end = Map::new();
-    end.insert("t".to_owned(), json!(record.t));
-    let state = system.state(record.t, &record.q, &record.v).into_iter();
-    end.extend(state.map(|(quantity, value)| (quantity.name, json!(value))));
-    Value::Object(end)
-}
-
-/// A state, a line for each number.
-pub(crate) fn numbers(system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<(String, String)> {
-    let line = |value: f64, unit: &str| format!("{} {unit}", number(value)).trim_end().to_owned();
-    let state = system.state(t, q, v).into_iter();
-    state.map(|(quantity, value)| (quantity.name, line(value, &quantity.unit))).collect()
+    let mut end = json!({"t": record.t});
+    for (quantity, value) in system.state(record.t, &record.q, &record.v) {
+        end[quantity.name] = json!(value);
+    }
+    end
 }

@@ -41,14 +41,6 @@ impl Caller {
         bar.as_ref().map(|bar| (bar.message(), bar.position(), bar.length().unwrap_or(0)))
     }
 
-    /// A bar that the caller sees, and no terminal.
-    fn bar(&self, label: &str, steps: u64) -> ProgressBar {
-        let bar = ProgressBar::hidden().with_message(label.to_owned());
-        bar.set_length(steps);
-        self.watch(&bar);
-        bar
-    }
-
     /// Shows a bar to the caller in place of the terminal.
     fn watch(&self, bar: &ProgressBar) {
         bar.set_draw_target(ProgressDrawTarget::hidden());
@@ -67,7 +59,10 @@ impl<'a> ShownToCaller<'a> {
     /// Shows a run of `steps` steps under the name `label`.
     #[must_use]
     pub fn new(caller: &'a Caller, label: &str, steps: u64) -> Self {
-        Self { bar: caller.bar(label, steps), caller }
+        let bar = ProgressBar::hidden().with_message(label.to_owned());
+        bar.set_length(steps);
+        caller.watch(&bar);
+        Self { bar, caller }
     }
 }
 

@@ -1,10 +1,10 @@
-//! `noslip check`: describes valid scenes and reports the errors of invalid ones.
+//! `noslip check`: describes valid scenes and reports the errors of invalid ones. `noslip equations`: the reduced equations of a system of text.
 
-use crate::args::CheckArguments;
+use crate::args::{CheckArguments, EquationsArguments};
 use crate::error::CliError;
 use crate::facts::described;
 use crate::inspect::method_names;
-use crate::{table, terminal};
+use crate::{inspect, table, terminal};
 use scene::{AnyScene, Overrides};
 use serde_json::{Map, Value, json};
 
@@ -66,4 +66,40 @@ fn invalid(name: &str, error: &CliError) -> Value {
         object["column"] = json!(finding.place.map(|place| place.column));
     }
     object
+}
+
+/// `noslip equations`: the rates of coordinates and quasi-velocities, as formulas of these and of the time `t`.
+pub(crate) fn equations(arguments: &EquationsArguments) -> Result<(), CliError> {
+    let scene = AnyScene::load_with(&arguments.scene, &arguments.set.set, &Overrides::default(), &method_names())?;
+    let AnyScene::Text(text) = &scene else {
+        let name = scene.name();
+        return Err(CliError::Request(format!(
+            "{name} is a sleigh, whose equations are on the page `scenes` of the documentation; accepted is a system of text"
+        )));
+    };
+    inspect::moves(&scene);
+    let Some(written) = text.model.written_equations(&text.start) else {
+        return Err(CliError::Computation(vec![format!(
+            "{}: the reduced equations are too large to be written",
+            scene.name()
+        )]));
+    };
+    if arguments.json {
+        return terminal::print_json(&json!({
+            "scene": scene.name(), "title": scene.title(), "duration": text.run.duration, "unknowns": written.unknowns,
+            "coordinates": text.model.coordinates().len(), "statements": written.statements, "rates": written.rates,
+            "start": written.start,
+        }));
+    }
+    let mut lines = String::new();
+    for (name, meaning) in &written.statements {
+        lines.push_str(&format!("{name} = {meaning}\n"));
+    }
+    for (name, rate) in written.unknowns.iter().zip(&written.rates) {
+        lines.push_str(&format!("{name}' = {rate}\n"));
+    }
+    let start =
+        written.unknowns.iter().zip(&written.start).map(|(name, value)| format!("{name} = {}", table::number(*value)));
+    lines.push_str(&format!("start: {}\n", start.collect::<Vec<_>>().join(", ")));
+    terminal::print(&lines)
 }

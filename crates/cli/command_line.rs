@@ -29,6 +29,11 @@ impl CommandLine {
         value.into_iter().fold(self, |line, value| line.with(flag, value))
     }
 
+    /// As [`Self::number`]; nothing for `None`.
+    pub(crate) fn maybe_number(self, flag: &str, value: Option<f64>) -> Self {
+        value.into_iter().fold(self, |line, value| line.number(flag, value))
+    }
+
     /// A flag without a value, if it was given.
     pub(crate) fn flag(mut self, flag: &str, given: bool) -> Self {
         self.0.extend(given.then(|| flag.to_owned()));
@@ -39,7 +44,7 @@ impl CommandLine {
     pub(crate) fn run(self, run: &RunSettings, step: f64) -> Self {
         let duration = run.duration.copysign(step);
         let line = self.with("--method", &run.method).number("--step", step.abs()).number("--duration", duration);
-        line.maybe("--alpha", run.alpha.map(|alpha| format!("{alpha:?}")))
+        line.maybe_number("--alpha", run.alpha)
     }
 }
 

@@ -1,28 +1,37 @@
 use crate::args::CompareArguments;
-use crate::comparison::{Comparison, REFERRED, WITHOUT_REFERENCE, better_than};
-use crate::error::CliError;
+use crate::error::{CliError, unless_interrupted};
 use crate::files::ClaimedFolder;
 use crate::in_memory::MOST_NUMBERS;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
-use crate::saves::Saves;
+use crate::resume::Saves;
 use crate::table::ComparisonRow;
-use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
+use crate::{account, facts, inspect, json, progress, table, terminal, train};
 use dla::{AnyState, Schedule};
-use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request, Run};
+use harness::{Drift, DriftVerdict, Method, Progress, Record, Request, Run};
 use report::{HEADINGS, Report, SceneReport, Series};
 use scene::{AnyScene, Built};
 use sleigh::Exact;
 use std::path::PathBuf;
 
+/// A comparison of more steps, of a train times its coordinates, has no computed reference, which would take longer than all of it.
+const REFERRED: u64 = 1 << 22;
+/// The message if a signal came after all methods.
+const WITHOUT_REFERENCE: &str = "all methods finished, the reference of their ends did not: there are no end errors";
+
+/// A comparison on one scene: the runs, method by method, with what the closed form says of them.
+pub(crate) struct Comparison {
+    pub(crate) rows: Vec<ComparisonRow>,
+    pub(crate) report: SceneReport,
+    /// How far it came, if Ctrl-C ended it.
+    pub(crate) interrupted: Option<String>,
+}
+
 /// `noslip compare`: long-run constraint and energy, method by method.
 pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
-    let scene = inspect::load_any(&arguments.scene, None)?;
-    let names: Vec<&str> = match &arguments.methods {
-        Some(names) => names.iter().map(|name| name.trim()).collect(),
-        None => METHODS.iter().map(|info| info.name).collect(),
-    };
-    let methods = methods(&names, scene.run().alpha, scene.run().tolerance)?;
+    let scene = inspect::load(&arguments.scene, None)?;
+    let names = inspect::listed(arguments.methods.as_deref());
+    let methods = inspect::methods(&names, scene.run().alpha, scene.run().tolerance)?;
     if let Some((_, name)) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(*name)) {
         let problem = format!("--methods: `{name}` is named twice; a comparison has one row for each method");
         return Err(CliError::Request(problem));
@@ -30,8 +39,8 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     let claimed = |folder: &PathBuf| ClaimedFolder::new(folder, arguments.scene.force);
     let folder = arguments.report.as_ref().map(claimed).transpose()?;
 
-    let mut saves = Saves::of(arguments)?;
-    let mut comparison = compare_scene(&scene, &methods, &mut saves, &Interrupt::listen())?;
+    let saves = Saves::of(arguments)?;
+    let mut comparison = compare_scene(&scene, &methods, &saves, &Interrupt::listen())?;
     if let Some(folder) = &folder {
         let report = Report {
             title: format!("noslip compare {}", scene.name()),
@@ -43,7 +52,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     }
     if arguments.scene.json {
         let rows: Vec<_> = comparison.rows.iter().map(|row| &row.json).collect();
-        let object = compare_numbers::json(scene.name(), &rows, comparison.interrupted.is_some());
+        let object = json::comparison(scene.name(), &rows, comparison.interrupted.is_some());
         terminal::print_json(&object)?;
     } else {
         comparison.print(&scene)?;
@@ -59,132 +68,88 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     unless_interrupted(comparison.interrupted, resume, failed)
 }
 
-/// The outcome of work that may have been interrupted; an earlier failure is printed.
-pub(crate) fn unless_interrupted(
-    interrupted: Option<String>,
-    resume: Option<PathBuf>,
-    outcome: Result<(), CliError>,
-) -> Result<(), CliError> {
-    let Some(made) = interrupted else { return outcome };
-    if let Err(error) = outcome {
-        terminal::say("error", &error);
-    }
-    Err(CliError::Interrupted { made, resume })
-}
-
-pub(crate) fn methods(names: &[&str], alpha: Option<f64>, tolerance: Option<f64>) -> Result<Vec<Method>, CliError> {
-    Ok(names.iter().map(|name| Method::of(name, alpha, tolerance)).collect::<Result<_, _>>()?)
-}
-
 /// Runs every method on the scene, until Ctrl-C.
 pub(crate) fn compare_scene(
     scene: &AnyScene,
     methods: &[Method],
-    saves: &mut Saves,
+    saves: &Saves,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
-    notes::moves(scene);
+    inspect::moves(scene);
     let built = scene.built()?;
-    Compare { scene, methods, saves, interrupt }.on(&built.system(), (&built.q, &built.v))
-}
-
-struct Compare<'a> {
-    scene: &'a AnyScene,
-    methods: &'a [Method],
-    saves: &'a mut Saves,
-    interrupt: &'a Interrupt,
-}
-
-/// A progress bar for a part of a comparison, which Ctrl-C can end.
-pub(crate) fn progress_of<'a>(scene: &str, label: &str, steps: u64, interrupt: &'a Interrupt) -> Interruptible<'a> {
-    Interruptible { bar: progress::bar(&format!("{scene} {label}"), steps), interrupt }
-}
-
-impl Compare<'_> {
-    /// The runs of all methods, as far as they come.
-    fn records(&mut self, system: &Built<'_>, request: &Request) -> Result<Vec<Record>, CliError> {
-        let name = self.scene.name();
-        let mut records = Vec::new();
-        for method in self.methods {
-            if self.interrupt.asked() {
-                break;
-            }
-            let mut progress = progress_of(name, method.info().name, request.schedule.steps, self.interrupt);
-            let scene: (&str, &dyn std::fmt::Debug) = match self.scene {
-                AnyScene::Sleigh(scene) => (name, scene),
-                AnyScene::Text(scene) => (name, &(&scene.words, &scene.start, &scene.run)),
-            };
-            records.push(self.saves.run(scene, &*system.mechanism(), method, request, &mut progress)?);
-            progress.bar.finish_and_clear();
+    let (system, q, v) = (&built.system(), &built.q, &built.v);
+    let samples = (MOST_NUMBERS / 32 / q.len().max(1) as u64).clamp(2, 1000);
+    let request = Request { schedule: scene.schedule(), q: q.clone(), v: v.clone(), samples };
+    let (schedule, mut records) = (&request.schedule, Vec::new());
+    for method in methods {
+        if interrupt.asked() {
+            break;
         }
-        Ok(records)
+        let label = format!("{} {}", scene.name(), method.info().name);
+        records.push(progress::shown(&label, schedule.steps, interrupt, |progress| {
+            saves.run(scene, &*system.mechanism(), method, &request, progress)
+        })?);
     }
-
-    /// Says how many methods finished, if Ctrl-C ended a run or the reference; else `None`.
-    fn interrupted(&self, records: &[Record], referred: bool) -> Option<String> {
-        let whole = records.iter().filter(|record| !record.interrupted).count();
+    let exact = exact(scene);
+    let start = system.mechanism().state(q, v);
+    let label = format!("{} reference", scene.name());
+    let reference = progress::shown(&label, 4 * schedule.steps, interrupt, |progress| {
+        ComparisonReference::of(system, exact.as_ref(), schedule, start, progress)
+    });
+    let referred = !matches!(reference, ComparisonReference::Interrupted);
+    let drifts: Vec<(&str, Drift)> =
+        records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
+    let (mut rows, mut series) = (Vec::new(), Vec::new());
+    for record in &records {
+        inspect::warn_of_jumps(record);
+        let whole = Some(record).filter(|record| record.is_whole());
+        let there = whole.and_then(|record| reference.at(record.t));
+        let error = there.map(|end| system.distance(&record.q, &end));
+        // The methods whose energy error starts smaller and becomes larger, each with the length of run (s) from which it is so.
+        let better_than = |record: &Record| -> Vec<(&str, f64)> {
+            let from = |other: &Drift| record.energy.drift.better_from(other);
+            drifts.iter().filter_map(|(name, other)| Some((*name, from(other)?))).collect()
+        };
+        let better = whole.map_or_else(Vec::new, better_than);
+        rows.push(ComparisonRow {
+            cells: table::cells(record, error),
+            json: json::compared_of(scene.name(), record, &account::state(system, record), error, &better),
+            better: table::better(record, &better),
+            failure: table::failure(record),
+            refused: record.refusal().is_some(),
+        });
+        series.push(series_of(system, record));
+    }
+    // The longest run: a failed run ends before the rest.
+    let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
+    let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
+    let (whole, all) = (records.iter().filter(|record| !record.interrupted).count(), methods.len());
+    let interrupted = if whole < all {
         let part = records.iter().find(|record| record.interrupted);
         let part = part.map(|record| format!(", {} up to t = {} s", record.method.name, table::number(record.t)));
-        let all = self.methods.len();
-        match whole < all {
-            true => Some(format!("{whole} of {all} methods finished{}", part.unwrap_or_default())),
-            false => (!referred).then(|| WITHOUT_REFERENCE.to_owned()),
-        }
-    }
+        Some(format!("{whole} of {all} methods finished{}", part.unwrap_or_default()))
+    } else {
+        (!referred).then(|| WITHOUT_REFERENCE.to_owned())
+    };
+    let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
+    let report = SceneReport {
+        name: scene.name().to_owned(),
+        title: scene.title().to_owned(),
+        facts: facts::of(scene)?,
+        columns: table::headings().map(str::to_owned).to_vec(),
+        rows: rows.iter().map(|row| row.cells.clone()).collect(),
+        series,
+        exact_path,
+        numbers: json::files(scene, &objects, interrupted.as_deref()),
+        ..SceneReport::default()
+    };
+    Ok(Comparison { rows, report, interrupted })
 }
 
-impl Compare<'_> {
-    fn on(mut self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<Comparison, CliError> {
-        let name = self.scene.name();
-        let samples = (MOST_NUMBERS / 32 / q.len().max(1) as u64).clamp(2, 1000);
-        let request = Request { schedule: self.scene.schedule(), q: q.to_vec(), v: v.to_vec(), samples };
-        let records = self.records(system, &request)?;
-        let exact = exact(self.scene);
-        let start = system.mechanism().state(q, v);
-        let mut progress = progress_of(name, "reference", 4 * request.schedule.steps, self.interrupt);
-        let reference = ComparisonReference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
-        progress.bar.finish_and_clear();
-        let referred = !matches!(reference, ComparisonReference::Interrupted);
-        let drifts: Vec<(&str, Drift)> =
-            records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
-        let (mut rows, mut series) = (Vec::new(), Vec::new());
-        for record in &records {
-            notes::warn_of_jumps(record);
-            let whole = Some(record).filter(|record| record.is_whole());
-            let there = whole.and_then(|record| reference.at(record.t));
-            let error = there.map(|end| system.distance(&record.q, &end));
-            let better = whole.map_or_else(Vec::new, |record| better_than(&record.energy.drift, &drifts));
-            rows.push(ComparisonRow {
-                cells: table::cells(record, error),
-                json: json::compared_of(name, record, &account::state(system, record), error, &better),
-                better: table::better(record, &better),
-                failure: table::failure(record),
-                refused: record.refusal().is_some(),
-            });
-            series.push(series_of(system, record));
-        }
-        // The longest run: a failed run ends before the rest.
-        let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
-        let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
-        let interrupted = self.interrupted(&records, referred);
-        let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
-        let report = SceneReport {
-            name: name.to_owned(),
-            title: self.scene.title().to_owned(),
-            facts: facts::of(self.scene)?,
-            columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
-            rows: rows.iter().map(|row| row.cells.clone()).collect(),
-            series,
-            exact_path,
-            numbers: compare_numbers::files(
-                name,
-                (self.scene.title(), self.scene.to_toml().ok()),
-                &objects,
-                interrupted.as_deref(),
-            ),
-            ..SceneReport::default()
-        };
-        Ok(Comparison { rows, report, interrupted })
+impl Comparison {
+    /// Prints its table.
+    pub(crate) fn print(&self, scene: &AnyScene) -> Result<(), CliError> {
+        terminal::print(&table::comparison(scene, &self.rows, self.interrupted.as_deref(), terminal::width()))
     }
 }
 
@@ -229,7 +194,7 @@ impl<'a> ComparisonReference<'a> {
         if schedule.steps.saturating_mul(size) > REFERRED {
             return Self::None;
         }
-        if progress.interrupt.asked() {
+        if progress.stops() {
             return Self::Interrupted;
         }
         let Ok(method) = Method::named(best, None) else { return Self::None };

@@ -1,6 +1,6 @@
 use crate::args::SceneArguments;
 use crate::error::CliError;
-use crate::{inspect, notes, table, terminal};
+use crate::{inspect, table, terminal};
 use dla::Schedule;
 use harness::{step_evaluations, step_time};
 use scene::{AnyScene, Scene, SceneEffect, TextScene};
@@ -22,8 +22,8 @@ type Part = (Vec<&'static str>, AnyScene);
 /// `noslip cost`: the cost of a step without effects, with each effect alone, and with all; for a system of text, without and with its
 /// forces.
 pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
-    let scene = inspect::load_any(arguments, None)?;
-    notes::moves(&scene);
+    let scene = inspect::load(arguments, None)?;
+    inspect::moves(&scene);
     let (parts, operations) = match &scene {
         AnyScene::Sleigh(scene) => (with_effects(scene), None),
         AnyScene::Text(scene) => (with_forces(scene)?, Some(scene.model.operations())),

@@ -39,13 +39,7 @@ pub(crate) fn diff(arguments: &DiffArguments) -> Result<(), CliError> {
     let Some(within) = within else { return Ok(()) };
     let far = differences.iter().filter(|difference| difference.size > *within);
     let mut far: Vec<String> = far
-        .map(|far| {
-            format!(
-                "the column {} differs by {:e}, which is more than \
-            {within:e}",
-                far.name, far.size
-            )
-        })
+        .map(|far| format!("the column {} differs by {:e}, which is more than {within:e}", far.name, far.size))
         .collect();
     if rows(&a) != rows(&b) {
         far.push(format!("the files have {} and {} rows", rows(&a), rows(&b)));
@@ -98,14 +92,8 @@ fn text(files: &[String; 2], [a, b]: [&Columns; 2], differences: &[Difference]) 
     let header = ["column", "largest difference", "in row", &files[0], &files[1]];
     let mut text = table::right_aligned(&header, &differences.iter().map(cells).collect::<Vec<_>>());
     if rows(a) != rows(b) {
-        let _ = writeln!(
-            text,
-            " the files have {} and {} rows: only the first {} are \
-            compared",
-            rows(a),
-            rows(b),
-            rows(a).min(rows(b))
-        );
+        let (a, b) = (rows(a), rows(b));
+        let _ = writeln!(text, " the files have {a} and {b} rows: only the first {} are compared", a.min(b));
     }
     for (file, only) in [(&files[0], alone(a, b).collect::<Vec<_>>()), (&files[1], alone(b, a).collect())] {
         if !only.is_empty() {

@@ -1,7 +1,7 @@
 //! The keys of effects, with their types and units: from the schema of scenes, which the tests hold against the program.
 
 use scene::EFFECTS;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A key of an effect.
@@ -57,16 +57,12 @@ fn type_of(property: &Value) -> String {
 /// For programs: an object for each key.
 pub(crate) fn json(kind: &str) -> Value {
     let one = |key: Key| {
-        let mut object = Map::new();
-        object.insert("name".to_owned(), json!(key.name));
-        object.insert("type".to_owned(), json!(key.kind));
-        object.insert("unit".to_owned(), json!(key.unit));
-        object.insert("required".to_owned(), json!(key.required));
+        let mut object = json!({"name": key.name, "type": key.kind, "unit": key.unit, "required": key.required});
         if !key.default.is_null() {
-            object.insert("default".to_owned(), key.default);
+            object["default"] = key.default;
         }
-        object.insert("summary".to_owned(), json!(key.meaning));
-        Value::Object(object)
+        object["summary"] = json!(key.meaning);
+        object
     };
     keys(kind).into_iter().map(one).collect()
 }

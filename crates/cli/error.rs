@@ -1,3 +1,4 @@
+use crate::terminal;
 use dla::{CheckpointError, RecommendError};
 use harness::MethodError;
 use harness::analysis::EquilibriumError;
@@ -93,28 +94,27 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Case { .. } => 2,
-            Self::Scene(_)
-            | Self::Sweep(_)
-            | Self::Sleigh(_)
-            | Self::Build(_)
-            | Self::Method(_)
-            | Self::Exists { .. }
-            | Self::Ending { .. } => 2,
-            #[cfg(not(feature = "parquet"))]
-            Self::WithoutParquet { .. } => 2,
-            Self::ChartEnding { .. } | Self::Request(_) | Self::Memory(_) => 2,
-            Self::Busy { .. } | Self::Read { .. } | Self::Checkpoint { .. } => 2,
-            Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
-            Self::Points { .. } => 2,
+            Self::Interrupted { .. } => INTERRUPTED,
+            Self::Write { .. } | Self::Folder { .. } | Self::Output(_) | Self::Report(_) | Self::Computation(_) => 1,
+            Self::Tolerance(error) if !matches!(**error, RecommendError::Request { .. }) => 1,
             // A search without a result is no fault of the request.
             Self::Equilibria(
                 EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_) | EquilibriumError::NotFinite,
             ) => 1,
-            Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => 2,
-            Self::Interrupted { .. } => INTERRUPTED,
-            Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => 1,
-            Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => 1,
+            _ => 2,
         }
     }
+}
+
+/// The outcome of work that may have been interrupted; an earlier failure is printed.
+pub(crate) fn unless_interrupted(
+    interrupted: Option<String>,
+    resume: Option<PathBuf>,
+    outcome: Result<(), CliError>,
+) -> Result<(), CliError> {
+    let Some(made) = interrupted else { return outcome };
+    if let Err(error) = outcome {
+        terminal::say("error", &error);
+    }
+    Err(CliError::Interrupted { made, resume })
 }

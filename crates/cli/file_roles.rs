@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::files::{new_of, place};
-use crate::part::PartFile;
+use crate::lock::PartFile;
 use crate::provenance::metadata_of;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(crate) struct FileRoles {
     read: Vec<PathBuf>,
-    /// With the flag that names the file, or that which comes with it.
+    /// Each file with the flag that names it, or that names the file beside it.
     written: Vec<(String, PathBuf)>,
 }
 

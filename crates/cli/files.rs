@@ -1,7 +1,7 @@
 use crate::error::CliError;
 use crate::lock::{Lock, replaced};
 use std::fs::File;
-use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Write};
+use std::io::{BufReader, BufWriter, Error, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, PathPersistError, TempPath};
 
@@ -154,16 +154,13 @@ fn same(one: &Path, other: &Path) -> Result<bool, Error> {
     if one.metadata()?.len() != other.metadata()?.len() {
         return Ok(false);
     }
-    let [mut one, mut other] = [one, other].map(|file| BufReader::with_capacity(1 << 16, file));
-    loop {
-        let (a, b) = (one.fill_buf()?, other.fill_buf()?);
-        let both = a.len().min(b.len());
-        if both == 0 || a[..both] != b[..both] {
-            return Ok(a.len() == b.len());
+    let [one, other] = [one, other].map(|file| BufReader::with_capacity(1 << 16, file).bytes());
+    for (a, b) in one.zip(other) {
+        if a? != b? {
+            return Ok(false);
         }
-        one.consume(both);
-        other.consume(both);
     }
+    Ok(true)
 }
 
 /// The file `NAME.noslip-new` beside `path`, that is removed unless it is renamed; with the usual rights of a new file. The name is
@@ -183,6 +180,11 @@ fn parent(path: &Path) -> PathBuf {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
         _ => PathBuf::from("."),
     }
+}
+
+/// The ending of the name of a file, in small letters; empty if the name has none.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().map_or_else(String::new, |ending| ending.to_string_lossy().to_lowercase())
 }
 
 /// The name that a file has while it is written.

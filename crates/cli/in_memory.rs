@@ -5,7 +5,7 @@ use crate::trigger::Trigger;
 use crate::{inspect, substeps};
 use dla::{AnyState, Node, Samples, Substeps, Trajectory, View};
 use harness::{EVENT_SAMPLES, Method};
-use scene::{AnyScene, Built, Column};
+use scene::{AnyScene, Column};
 use serde_json::Value;
 
 /// A run to be made, whose nodes stay in memory: the flags of `noslip run`.
@@ -87,8 +87,7 @@ pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<Ru
     check_times(&request.times, scene.run().duration)?;
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
-    let built = scene.built().map_err(CliError::from)?;
-    Ok(InMemory { scene, request, method: &method, caller }.on(&built.system(), (&built.q, &built.v))?)
+    Ok(made(scene, request, &method, caller)?)
 }
 
 /// Maximum count of numbers that runs keep in memory.
@@ -110,63 +109,49 @@ impl RunRequest {
     }
 }
 
-struct InMemory<'a> {
-    scene: &'a AnyScene,
-    request: &'a RunRequest,
-    method: &'a Method,
-    caller: &'a Caller,
-}
-
 /// Parses the events that are looked for.
 fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
 }
 
-impl InMemory<'_> {
-    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<RunResult, CliError> {
-        let Self {
-            scene,
-            request: RunRequest { every, times, tolerance, events, until, backward, .. },
-            method,
-            caller,
-        } = self;
-        let (reported, ending) = (triggers(events)?, triggers(until)?);
-        let mut search = ShownToCaller::new(caller, "choosing a step", 0);
-        let (run, steps) = ((scene, method), (*tolerance, *backward));
-        let account = Account::new(system, run, (q, v), steps, (&reported, &ending), &mut search)?;
-        let schedule = account.request.schedule;
-        self.request.fits(schedule.steps, system.columns(&account.start()).len())?;
-        let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
-        let (mut trajectory, sampled): (_, Vec<Node>);
-        let mechanism = system.mechanism();
-        let (made, nodes) = if times.is_empty() {
-            trajectory = Trajectory::every(*every);
-            let made = account.observed(EVENT_SAMPLES, &mut trajectory, &mut shown);
-            (made, trajectory.nodes())
-        } else {
-            let mut samples = Samples::new(method, times);
-            let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
-            // The motion at the times asked for, as far as the run comes; the work is not known there.
-            let node = |(t, state): (&f64, &AnyState)| {
-                let piece = mechanism.smooth_piece(*t);
-                Node::of(&View { system: &*piece, k: 0, t: *t, state }, f64::NAN, None)
-            };
-            sampled = times.iter().zip(samples.taken()).map(node).collect();
-            (made, &sampled[..])
+fn made(scene: &AnyScene, request: &RunRequest, method: &Method, caller: &Caller) -> Result<RunResult, CliError> {
+    let RunRequest { every, times, tolerance, events, until, backward, .. } = request;
+    let built = scene.built()?;
+    let (system, start) = (&built.system(), (&built.q[..], &built.v[..]));
+    let (reported, ending) = (triggers(events)?, triggers(until)?);
+    let mut search = ShownToCaller::new(caller, "choosing a step", 0);
+    let (run, steps) = ((scene, method), (*tolerance, *backward));
+    let account = Account::new(system, run, start, steps, (&reported, &ending), &mut search)?;
+    let schedule = account.request.schedule;
+    request.fits(schedule.steps, system.columns(&account.start()).len())?;
+    let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
+    let (mut trajectory, sampled): (_, Vec<Node>);
+    let mechanism = system.mechanism();
+    let (made, nodes) = if times.is_empty() {
+        trajectory = Trajectory::every(*every);
+        let made = account.observed(EVENT_SAMPLES, &mut trajectory, &mut shown);
+        (made, trajectory.nodes())
+    } else {
+        let mut samples = Samples::new(method, times);
+        let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
+        // The motion at the times asked for, as far as the run comes; the work is not known there.
+        let node = |(t, state): (&f64, &AnyState)| {
+            let piece = mechanism.smooth_piece(*t);
+            Node::of(&View { system: &*piece, k: 0, t: *t, state }, f64::NAN, None)
         };
-        let columns = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
-        let mut numbers = vec![Vec::new(); columns.len()];
-        if numbers.iter_mut().any(|column: &mut Vec<f64>| column.try_reserve_exact(nodes.len()).is_err()) {
-            let problem = format!("{} nodes of {} numbers do not fit into memory", nodes.len(), columns.len());
-            return Err(CliError::Memory(format!(
-                "{problem}: every= keeps fewer nodes, t_eval= the motion at some times"
-            )));
-        }
-        for node in nodes {
-            numbers.iter_mut().zip(system.row(node)).for_each(|(column, x)| column.push(x));
-        }
-        let (object, record) = (account.object(&made), &made.record);
-        let (failure, interrupted) = (substeps::failure(record), record.interrupted);
-        Ok(RunResult { columns, numbers, object, failure, interrupted })
+        sampled = times.iter().zip(samples.taken()).map(node).collect();
+        (made, &sampled[..])
+    };
+    let columns = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
+    let mut numbers = vec![Vec::new(); columns.len()];
+    if numbers.iter_mut().any(|column: &mut Vec<f64>| column.try_reserve_exact(nodes.len()).is_err()) {
+        let problem = format!("{} nodes of {} numbers do not fit into memory", nodes.len(), columns.len());
+        return Err(CliError::Memory(format!("{problem}: every= keeps fewer nodes, t_eval= the motion at some times")));
     }
+    for node in nodes {
+        numbers.iter_mut().zip(system.row(node)).for_each(|(column, x)| column.push(x));
+    }
+    let (object, record) = (account.object(&made), &made.record);
+    let (failure, interrupted) = (substeps::failure(record), record.interrupted);
+    Ok(RunResult { columns, numbers, object, failure, interrupted })
 }

@@ -1,39 +1,61 @@
 use crate::args::{SceneArguments, Settings};
 use crate::error::CliError;
-use harness::{METHODS, Method};
-use scene::{AnyScene, Overrides, RunSettings, Scene};
+use crate::table::number;
+use crate::terminal;
+use harness::{METHODS, Method, Record};
+use scene::{AnyScene, Overrides, RunSettings};
 
 /// The names that a scene's `method` may have.
 pub(crate) fn method_names() -> Vec<&'static str> {
     METHODS.iter().map(|info| info.name).collect()
 }
 
-/// The scene of a command line, with what its flags say instead.
-pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<Scene, CliError> {
-    let SceneArguments { step, duration, alpha, .. } = *arguments;
-    let overrides = Overrides { method, step, duration, alpha };
-    Ok(Scene::load_with(&arguments.scene, &arguments.set.set, &overrides, &method_names())?)
+/// The scene of a command line, with the run settings of its flags.
+pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<AnyScene, CliError> {
+    load_over((&arguments.scene, &arguments.set), arguments.run(method, arguments.duration))
 }
 
-/// The scene of a command line, of either kind.
-pub(crate) fn load_any(arguments: &SceneArguments, method: Option<&str>) -> Result<AnyScene, CliError> {
-    load_any_with((&arguments.scene, &arguments.set), method, arguments.step, arguments.duration, arguments.alpha)
-}
-
-/// The scene of that name, of either kind, with the settings of the command line, of which flags come last.
-pub(crate) fn load_any_with(
-    (scene, settings): (&str, &Settings),
-    method: Option<&str>,
-    step: Option<f64>,
-    duration: Option<f64>,
-    alpha: Option<f64>,
-) -> Result<AnyScene, CliError> {
-    let names = method_names();
-    let overrides = Overrides { method, step, duration, alpha };
-    Ok(AnyScene::load_with(scene, &settings.set, &overrides, &names)?)
+/// The scene `scene` with the settings of the command line, and `run` settings after them.
+pub(crate) fn load_over((scene, set): (&str, &Settings), run: Overrides<'_>) -> Result<AnyScene, CliError> {
+    Ok(AnyScene::load_with(scene, &set.set, &run, &method_names())?)
 }
 
 /// The method of a run, with its settings.
 pub(crate) fn method(run: &RunSettings) -> Result<Method, CliError> {
     Ok(Method::of(&run.method, run.alpha, run.tolerance)?)
+}
+
+/// The names that a list of `--methods` has; all names by default.
+pub(crate) fn listed(names: Option<&[String]>) -> Vec<&str> {
+    match names {
+        Some(names) => names.iter().map(|name| name.trim()).collect(),
+        None => method_names(),
+    }
+}
+
+/// The methods of these names.
+pub(crate) fn methods(names: &[&str], alpha: Option<f64>, tolerance: Option<f64>) -> Result<Vec<Method>, CliError> {
+    Ok(names.iter().map(|name| Method::of(name, alpha, tolerance)).collect::<Result<_, _>>()?)
+}
+
+/// Warns of steps of a run that change the energy though no force does that work.
+pub(crate) fn warn_of_jumps(record: &Record) {
+    if let Some(jump) = record.energy.jump {
+        terminal::say("warning", &format!("{}: {jump}", record.method.name));
+    }
+}
+
+/// Says which numbers of the start the constraints of a scene do not admit.
+pub(crate) fn moves(scene: &AnyScene) {
+    let AnyScene::Text(scene) = scene else { return };
+    for (first, moved) in scene.start.moved.iter().enumerate().map(|(k, moved)| (k == 0, moved)) {
+        let (from, to) = (number(moved.from), number(moved.to));
+        let note = format!(
+            "the constraints do not admit {} = {from} at the start; the run starts with {to}{}",
+            moved.name,
+            // Numbers that `start` omits are moved before numbers that it gives.
+            if first { ": leave out of `start` what is to follow from the rest" } else { "" }
+        );
+        terminal::say("note", &note);
+    }
 }

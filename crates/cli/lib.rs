@@ -2,6 +2,7 @@
 //! run whose nodes its caller keeps, and [`plan`] the parts of a sweep.
 
 mod account;
+mod analysis;
 mod args;
 mod called;
 mod chart_file;
@@ -9,19 +10,13 @@ mod check;
 mod columns_file;
 mod command_line;
 mod compare;
-mod compare_numbers;
-mod comparison;
-mod completions;
 mod coordinate;
 mod cost;
-mod csv_text;
 mod diff;
 mod effect_keys;
 mod ensemble;
-mod equations;
 mod equilibria;
 mod error;
-mod exponents;
 mod facts;
 mod file_roles;
 mod files;
@@ -30,44 +25,33 @@ mod format;
 mod in_memory;
 mod inspect;
 mod interrupt;
-mod job;
 mod json;
 mod list;
 mod lock;
 mod lyapunov;
-mod measurement;
-mod notes;
 mod output;
 #[cfg(feature = "parquet")]
 mod parquet_file;
-mod part;
 mod phase;
 mod plane;
 mod plot;
 mod points_file;
 mod precision;
-mod precision_csv;
 mod precision_text;
-mod processor;
 mod program;
 mod progress;
 mod provenance;
 mod resume;
 mod row_verdict;
-mod rows_back;
 mod run;
 mod run_report;
-mod run_rows;
-mod saves;
 mod section;
 mod stability;
 mod stability_map;
 mod starts;
-mod steady;
 mod substeps;
 mod table;
 mod terminal;
-mod totals;
 mod train;
 mod trigger;
 
@@ -79,7 +63,7 @@ use std::process::ExitCode;
 pub use called::{Caller, CommandOutput, ShownToCaller, call};
 pub use ensemble::{SweepPlan, plan};
 pub use in_memory::{Refusal, RunRequest, RunResult, check_times, run};
-pub use processor::{missing_instructions, wrong_processor};
+pub use program::{missing_instructions, wrong_processor};
 
 /// The program: the command of its arguments, with its exit code.
 #[must_use]
@@ -138,12 +122,12 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
         Some(Command::Merge(arguments)) => ensemble::merge(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Equations(arguments)) => equations::equations(&arguments),
+        Some(Command::Equations(arguments)) => check::equations(&arguments),
         Some(Command::List(arguments)) => list::list(&arguments),
         Some(Command::New(arguments)) => list::new(&arguments),
         Some(Command::Plot(arguments)) => plot::plot(&arguments),
         Some(Command::Diff(arguments)) => diff::diff(&arguments),
-        Some(Command::Completions { shell }) => completions::completions(shell),
-        Some(Command::Man { command }) => completions::man(command.as_deref()),
+        Some(Command::Completions { shell }) => list::completions(shell),
+        Some(Command::Man { command }) => list::man(command.as_deref()),
     }
 }

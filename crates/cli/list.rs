@@ -1,10 +1,12 @@
-//! `noslip list` and `noslip new`.
+//! `noslip list`, `new`, `completions` and `man`.
 
-use crate::args::{ListArguments, Listed, NewArguments};
+use crate::args::{Arguments, ListArguments, Listed, NewArguments};
 use crate::error::CliError;
 use crate::files::write_whole;
 use crate::inspect::method_names;
 use crate::{effect_keys, stability, table, terminal};
+use clap::CommandFactory;
+use clap_complete::Shell;
 use harness::METHODS;
 use scene::{AnyScene, Scene};
 use serde_json::json;
@@ -69,4 +71,32 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<(), CliError> {
     }
     write_whole(&arguments.file, arguments.force, |file| file.write_all(Scene::template().as_bytes()))?;
     terminal::print(&format!("written: {}\n", arguments.file.display()))
+}
+
+/// Prints the completions of a shell.
+pub(crate) fn completions(shell: Shell) -> Result<(), CliError> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "noslip", &mut text);
+    terminal::print(&String::from_utf8_lossy(&text))
+}
+
+/// Prints a page for `man`, of the program or of one of its commands.
+pub(crate) fn man(command: Option<&str>) -> Result<(), CliError> {
+    let mut all = Arguments::command();
+    // The names of the commands are then whole: `noslip run`.
+    all.build();
+    let page = match command {
+        None => Some(&all),
+        Some(name) => all.find_subcommand(name).filter(|command| !command.is_hide_set()),
+    };
+    let Some(page) = page else {
+        let names: Vec<&str> =
+            all.get_subcommands().filter(|command| !command.is_hide_set()).map(clap::Command::get_name).collect();
+        let problem =
+            format!("unknown command `{}`; the commands are {}", command.unwrap_or_default(), names.join(", "));
+        return Err(CliError::Request(problem));
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page.clone()).render(&mut text).map_err(CliError::Output)?;
+    terminal::print(&String::from_utf8_lossy(&text))
 }

@@ -1,12 +1,9 @@
-use crate::csv_text;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::format::Format;
-use crate::part::PartFile;
-use crate::provenance::{Provenance, label, metadata_of};
-use crate::rows_back;
-use crate::terminal;
-use arrays::ArrayColumn;
+use crate::format::{Format, csv_header};
+use crate::lock::PartFile;
+use crate::provenance::{Provenance, described, label, metadata_of};
+use crate::{columns_file, terminal};
 use crc32fast::Hasher;
 use scene::Column;
 use std::fs::File;
@@ -35,9 +32,7 @@ impl<'a> OutputRequest<'a> {
         }
         let format = Format::of(path, format)?;
         check_file(path, force || resumed)?;
-        if format.is_text() {
-            check_file(&metadata_of(path), force || resumed)?;
-        }
+        format.check_metadata(path, force || resumed)?;
         Ok(Self { path: Some(path), format, force })
     }
 }
@@ -69,52 +64,43 @@ impl<'a> Output<'a> {
     pub(crate) fn open(
         asked: OutputRequest<'a>,
         provenance: Provenance,
-        columns: (Vec<Column>, u64),
+        (columns, every): (Vec<Column>, u64),
         from: Option<(Position, bool)>,
     ) -> Result<Self, CliError> {
         let part = asked.path.map(PartFile::lock).transpose()?;
         let new = part.as_ref().filter(|part| part.is_new()).map(|part| part.path().to_owned());
-        let opened = Self::open_with(part, asked, provenance, columns, from);
-        if let (Err(_), Some(new)) = (&opened, new) {
-            let _ = std::fs::remove_file(new);
-        }
-        opened
-    }
-
-    fn open_with(
-        part: Option<PartFile>,
-        asked: OutputRequest<'a>,
-        provenance: Provenance,
-        (columns, every): (Vec<Column>, u64),
-        from: Option<(Position, bool)>,
-    ) -> Result<Self, CliError> {
         let writer: Box<dyn Write> = match &part {
             Some(part) => Box::new(part.file().try_clone().map_err(|source| part.failed(source))?),
             None => Box::new(terminal::Out),
         };
-        let (line, checksum) = (Vec::new(), Hasher::new());
-        let writer = BufWriter::with_capacity(1 << 16, writer);
-        let mut output = Self {
+        let output = Self {
             asked,
             provenance,
             columns,
             every,
             part,
-            writer,
-            line,
+            writer: BufWriter::with_capacity(1 << 16, writer),
+            line: Vec::new(),
             bytes: 0,
-            checksum,
+            checksum: Hasher::new(),
             before_last: None,
             failed: None,
             own: false,
         };
+        output.begun(from).inspect_err(|_| {
+            let _ = new.map(std::fs::remove_file);
+        })
+    }
+
+    fn begun(mut self, from: Option<(Position, bool)>) -> Result<Self, CliError> {
+        let asked = self.asked;
         if let (Some((position, begun)), Some(path)) = (from, asked.path)
-            && output.goes_on(path, position, begun)?
+            && self.goes_on(path, position, begun)?
         {
-            return Ok(output);
+            return Ok(self);
         }
-        if let (Some(part), Some(path)) = (&output.part, asked.path) {
-            if !(asked.force || output.own) {
+        if let (Some(part), Some(path)) = (&self.part, asked.path) {
+            if !(asked.force || self.own) {
                 check_file(path, false)?;
                 if part.len()? > 0 {
                     return Err(CliError::Request(format!(
@@ -127,10 +113,10 @@ impl<'a> Output<'a> {
             file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0))).map_err(|source| part.failed(source))?;
         }
         if asked.format == Format::Csv {
-            output.line = format!("{}\n", csv_text::header(output.columns.iter().map(label))).into_bytes();
-            output.write();
+            self.line = format!("{}\n", csv_header(self.columns.iter().map(label))).into_bytes();
+            self.write();
         }
-        Ok(output)
+        Ok(self)
     }
 
     /// Takes over the rows up to a position, from `OUT.part` or from the output of an ended run. Returns false if neither has them. If the
@@ -140,15 +126,19 @@ impl<'a> Output<'a> {
         let unreadable = |source| CliError::Read { path: part.path().to_owned(), source };
         let mut file = part.file();
         let there = part.len()?;
-        let same = |sum: &Option<Hasher>| sum.clone().is_some_and(|sum| u64::from(sum.finalize()) == checksum);
-        let mut found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
-        let old = File::open(path).ok();
-        let in_old = match &old {
-            Some(old) if !same(&found) => self.has_rows(path, old, bytes, same)?,
-            _ => false,
+        let same = |sum: &Hasher| u64::from(sum.clone().finalize()) == checksum;
+        let mut found = summed(file, bytes).map_err(unreadable)?.filter(same);
+        let old = File::open(path).is_ok();
+        let in_old = old && found.is_none() && {
+            let mut sum = Summed(Hasher::new());
+            match self.old_rows(path, bytes, &mut sum) {
+                Ok(()) => same(&sum.0),
+                Err(error) if error.kind() == ErrorKind::InvalidData => false,
+                Err(source) => return Err(CliError::Read { path: path.to_owned(), source }),
+            }
         };
         if !begun {
-            self.own = bytes > 0 && (in_old || same(&found));
+            self.own = bytes > 0 && (in_old || found.is_some());
             return Ok(false);
         }
         if in_old {
@@ -159,24 +149,23 @@ impl<'a> Output<'a> {
                     path.display()
                 )));
             }
-            self.take_rows(path, bytes)?;
-            found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
+            let mut writer = BufWriter::with_capacity(1 << 16, file);
+            let emptied = file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0)));
+            let copied = emptied.and_then(|_| self.old_rows(path, bytes, &mut writer)).and_then(|()| writer.flush());
+            copied.map_err(|source| part.failed(source))?;
+            found = summed(file, bytes).map_err(unreadable)?.filter(same);
         }
-        match found.filter(|sum| same(&Some(sum.clone()))) {
-            Some(_) if every != self.every => {
-                let problem = format!(
-                    "--every {}: the rows before the checkpoint were written with --every \
-                    {every}",
-                    self.every
-                );
-                Err(CliError::Request(problem))
-            }
+        match found {
+            Some(_) if every != self.every => Err(CliError::Request(format!(
+                "--every {}: the rows before the checkpoint were written with --every {every}",
+                self.every
+            ))),
             Some(sum) => {
                 file.set_len(bytes).and_then(|()| file.seek(SeekFrom::End(0))).map_err(unreadable)?;
                 (self.bytes, self.checksum, self.own) = (bytes, sum, true);
                 Ok(true)
             }
-            None if self.asked.force || part.is_new() && old.is_none() => {
+            None if self.asked.force || part.is_new() && !old => {
                 let told = "no rows from before the checkpoint are left; the file begins after the checkpoint";
                 terminal::say("warning", &format!("{}: {told}", path.display()));
                 Ok(false)
@@ -190,47 +179,17 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Whether the finished output of an earlier run begins with these rows.
-    fn has_rows(
-        &self,
-        path: &Path,
-        old: &File,
-        bytes: u64,
-        same: impl Fn(&Option<Hasher>) -> bool,
-    ) -> Result<bool, CliError> {
-        let unreadable = |source| CliError::Read { path: path.to_owned(), source };
+    /// Writes the rows at the beginning of a finished output as they were in `OUT.part`: `bytes` bytes.
+    ///
+    /// # Errors
+    /// The errors of the files, and [`ErrorKind::InvalidData`] if the output has no such rows.
+    fn old_rows(&self, path: &Path, bytes: u64, to: &mut impl Write) -> Result<(), Error> {
         if self.asked.format.is_text() {
-            return Ok(same(&summed(old, bytes, &mut std::io::sink()).map_err(unreadable)?));
+            let copied = std::io::copy(&mut File::open(path)?.take(bytes), to)?;
+            return if copied == bytes { Ok(()) } else { Err(ErrorKind::InvalidData.into()) };
         }
-        let Some(rows) = self.rows_in(bytes) else { return Ok(false) };
-        let mut sum = SummedColumn(Hasher::new());
-        match rows_back::copy(path, self.asked.format, &self.columns, rows, &mut sum) {
-            Ok(()) => Ok(same(&Some(sum.0))),
-            Err(error) if error.kind() == ErrorKind::InvalidData => Ok(false),
-            Err(error) => Err(unreadable(error)),
-        }
-    }
-
-    /// Copies these rows of the finished output to `OUT.part`.
-    fn take_rows(&self, path: &Path, bytes: u64) -> Result<(), CliError> {
-        let Some(part) = &self.part else { return Ok(()) };
-        let mut file = part.file();
-        let mut copied = || {
-            file.set_len(0)?;
-            file.seek(SeekFrom::Start(0))?;
-            if self.asked.format.is_text() {
-                return summed(&File::open(path)?, bytes, &mut file).map(drop);
-            }
-            let mut writer = BufWriter::with_capacity(1 << 16, file);
-            rows_back::copy(path, self.asked.format, &self.columns, self.rows_in(bytes).unwrap_or(0), &mut writer)?;
-            writer.flush()
-        };
-        copied().map_err(|source| part.failed(source))
-    }
-
-    /// The number of rows in `bytes` bytes of numbers.
-    fn rows_in(&self, bytes: u64) -> Option<u64> {
-        bytes.checked_div(8 * self.columns.len() as u64)
+        let rows = bytes.checked_div(8 * self.columns.len() as u64).ok_or(ErrorKind::InvalidData)?;
+        columns_file::copy_rows(path, self.asked.format, &self.columns, rows, to)
     }
 
     /// Adds the row of node `k`. An error is kept until the end: the run goes on.
@@ -320,21 +279,17 @@ impl<'a> Output<'a> {
             part.file().sync_all().map_err(|source| part.failed(source))?;
             // The metadata comes first, so that rows never lack it.
             check_file(path, overwrite)?;
-            provenance.write_beside(path, &self.columns)?;
+            provenance.write_beside(path, &described(&self.columns))?;
             return part.becomes(path, overwrite).inspect_err(|_| {
                 let _ = std::fs::remove_file(metadata_of(path));
             });
         }
-        let document = provenance.document(&path.file_name().unwrap_or_default().to_string_lossy(), &self.columns);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let document = provenance.document(&name, &described(&self.columns));
         let width = 8 * self.columns.len();
         let rows = self.bytes.checked_div(width as u64).unwrap_or(0);
-        write_whole(path, overwrite, |file| match self.asked.format {
-            Format::Npz => arrays::write(file, &in_arrays(&self.columns), rows, &document, |push| {
-                numbers(part.file(), width)?.try_for_each(|row| push(&row?))
-            }),
-            #[cfg(feature = "parquet")]
-            Format::Parquet => crate::parquet_file::write(file, &self.columns, &document, numbers(part.file(), width)?),
-            Format::Csv | Format::Jsonl => Ok(()),
+        write_whole(path, overwrite, |file| {
+            self.asked.format.write_numbers(file, &self.columns, (rows, &document), numbers(part.file(), width)?)
         })?;
         // Rows that a run goes on from are kept.
         if !(checkpoint && interrupted) {
@@ -345,9 +300,9 @@ impl<'a> Output<'a> {
 }
 
 /// Sums the bytes written into a checksum.
-struct SummedColumn(Hasher);
+struct Summed(Hasher);
 
-impl Write for SummedColumn {
+impl Write for Summed {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Error> {
         self.0.update(bytes);
         Ok(bytes.len())
@@ -358,21 +313,12 @@ impl Write for SummedColumn {
     }
 }
 
-/// Copies the first `bytes` bytes of a file and returns their checksum; `None` if the file is shorter.
-fn summed(mut file: &File, bytes: u64, copy: &mut impl Write) -> Result<Option<Hasher>, Error> {
+/// The checksum of the first `bytes` bytes of a file; `None` if the file is shorter.
+fn summed(mut file: &File, bytes: u64) -> Result<Option<Hasher>, Error> {
     file.seek(SeekFrom::Start(0))?;
-    let (mut sum, mut left, mut block) = (Hasher::new(), bytes, vec![0; 1 << 16]);
-    while left > 0 {
-        let wanted = left.min(block.len() as u64) as usize;
-        let read = file.read(&mut block[..wanted])?;
-        if read == 0 {
-            return Ok(None);
-        }
-        sum.update(&block[..read]);
-        copy.write_all(&block[..read])?;
-        left -= read as u64;
-    }
-    Ok(Some(sum))
+    let mut sum = Summed(Hasher::new());
+    let found = std::io::copy(&mut BufReader::with_capacity(1 << 16, file).take(bytes), &mut sum)?;
+    Ok((found == bytes).then_some(sum.0))
 }
 
 /// The rows of numbers in a file, from its beginning.
@@ -384,9 +330,4 @@ fn numbers(mut file: &File, width: usize) -> Result<impl Iterator<Item = Result<
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => None,
         Err(error) => Some(Err(error)),
     }))
-}
-
-/// The columns as entries of an archive of arrays.
-pub(crate) fn in_arrays(columns: &[Column]) -> Vec<ArrayColumn<'_>> {
-    columns.iter().map(|column| ArrayColumn { name: &column.name, whole: column.whole }).collect()
 }

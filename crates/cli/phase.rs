@@ -1,12 +1,11 @@
 use crate::args::PhaseArguments;
+use crate::chart_file::{check_picture, write_picture};
 use crate::error::CliError;
-use crate::file_roles::FileRoles;
-use crate::files::{check_file, write_whole};
 use crate::{inspect, progress, table, terminal};
-use dla::{Mechanism, RunError, Schedule};
+use dla::Schedule;
 use harness::analysis::{Rounds, weighted_mean};
 use harness::{Method, Run};
-use report::{Chart, Layer, chart_svg};
+use report::{Chart, Layer};
 use scene::{MAX_STEPS, RunSettings, Scene, SceneEffect, Started};
 use serde_json::{Value, json};
 use sleigh::planimeter::Holonomy;
@@ -18,69 +17,35 @@ const HALVINGS: i32 = 6;
 /// Points of the curve of a picture.
 const POINTS: u32 = 360;
 
-/// The measurements.
-struct MeasuredPhase {
-    step: f64,
-    turns: Vec<f64>,
-    area: f64,
-    curvature: Option<f64>,
-    exact: Option<Holonomy>,
-    heading: f64,
-    offset: f64,
-}
-
 /// `noslip phase`: what the tracer's loops turn the blade by.
 pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
-    let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
+    let (shared, picture) = (&arguments.scene, arguments.picture.as_deref());
+    let run = shared.run(arguments.method.as_deref(), shared.duration);
+    let scene = Scene::load_with(&shared.scene, &shared.set.set, &run, &inspect::method_names())?;
     let method = inspect::method(&scene.run)?;
     let path = scene.effects.iter().find_map(|effect| match effect {
         SceneEffect::Tracer { path } => Some(path),
         _ => None,
     });
     let Some(path) = path else { return Err(CliError::WithoutTracer { scene: scene.name.clone() }) };
-    let period = path.period();
-    if let Some(file) = &arguments.picture {
-        FileRoles::of(&arguments.scene.scene).writes("--picture", Some(file)).check()?;
-        check_file(file, arguments.scene.force)?;
-    }
-    let loops = arguments.loops.unwrap_or((scene.run.duration / period).floor().max(1.0) as u64);
-    let steps = steps_of_a_loop(&scene, period, loops)?;
-    let schedule = |loops: u64| Schedule { t0: 0.0, step: period / steps as f64, steps: loops * steps };
+    check_picture(picture, shared)?;
+    let loops = arguments.loops.unwrap_or((scene.run.duration / path.period()).floor().max(1.0) as u64);
+    let measured = MeasuredPhase::of(&scene, path, &method, loops)?;
+    write_picture(picture, shared, || measured.circle_map(&scene))?;
+    if shared.json { terminal::print_json(&measured.object(&scene)) } else { terminal::print(&measured.text(&scene)) }
+}
 
-    let turned = |scene: &Scene, loops: u64| {
-        let Started { system, q, v } = scene.system()?;
-        let loops = Loops { method: &method, schedule: schedule(loops), every: steps };
-        let turns = loops.on(&*system.mechanism(), (&q, &v));
-        turns.map_err(|error| CliError::Computation(vec![format!("{}: {error}", method.info().name)]))
-    };
-    let turns = turned(&scene, loops)?;
-    let moving = scene.effects.iter().any(|effect| matches!(effect, SceneEffect::Turntable { .. }));
-    let mut measured = MeasuredPhase {
-        step: schedule(1).step,
-        turns,
-        area: path.area(),
-        curvature: None,
-        exact: (!moving).then(|| path.holonomy(scene.sleigh.offset())).transpose()?,
-        heading: scene.start.heading,
-        offset: scene.sleigh.offset(),
-    };
-    if measured.area != 0.0 && !moving {
-        let mut ratios = Vec::new();
-        for k in 1..=HALVINGS {
-            let size = 0.5_f64.powi(k);
-            ratios.push((size, turned(&smaller(&scene, size)?, 1)?[0] / (size * size * measured.area)));
-        }
-        measured.curvature = Some(-at_zero(&ratios));
-    }
-    if let Some(file) = &arguments.picture {
-        let picture = chart_svg(&circle_map(&scene, &measured));
-        write_whole(file, arguments.scene.force, |out| std::io::Write::write_all(out, picture.as_bytes()))?;
-    }
-    if arguments.scene.json {
-        terminal::print_json(&object(&scene, &method, path, &measured))
-    } else {
-        terminal::print(&text(&scene, &method, &measured))
-    }
+/// The measurements.
+struct MeasuredPhase {
+    method: &'static str,
+    step: f64,
+    period: f64,
+    turns: Vec<f64>,
+    area: f64,
+    curvature: Option<f64>,
+    exact: Option<Holonomy>,
+    heading: f64,
+    offset: f64,
 }
 
 /// The steps of a loop: as many as one period has at the step of the scene, or as its pieces between corners need; refused if all loops
@@ -124,27 +89,44 @@ fn at_zero(points: &[(f64, f64)]) -> f64 {
     values.first().copied().unwrap_or(f64::NAN)
 }
 
-/// The turns of the blade, loop by loop.
-struct Loops<'a> {
-    method: &'a Method,
-    schedule: Schedule,
-    every: u64,
-}
-
-impl Loops<'_> {
-    fn on(self, system: &dyn Mechanism, (q, v): (&[f64], &[f64])) -> Result<Vec<f64>, RunError> {
-        let Self { method, schedule, every } = self;
-        let bar = progress::bar(method.info().name, schedule.steps);
-        let mut rounds = Rounds::new(2, every);
-        let mut state = system.state(q, v);
-        let mut advance = |steps| bar.inc(steps);
-        let outcome = Run::of(system, method).observe(&mut rounds).progress(&mut advance).moves(&schedule, &mut state);
-        bar.finish_and_clear();
-        outcome.map(|_| rounds.each())
-    }
+/// The turns of the blade, loop by loop, over `loops` loops of `steps` steps in `period` (s).
+fn turns(scene: &Scene, method: &Method, [loops, steps]: [u64; 2], period: f64) -> Result<Vec<f64>, CliError> {
+    let Started { system, q, v } = scene.system()?;
+    let (mechanism, name) = (system.mechanism(), method.info().name);
+    let schedule = Schedule { t0: 0.0, step: period / steps as f64, steps: loops * steps };
+    let bar = progress::bar(name, schedule.steps);
+    let mut rounds = Rounds::new(2, steps);
+    let mut advance = |steps| bar.inc(steps);
+    let mut state = mechanism.state(&q, &v);
+    let outcome = Run::of(&*mechanism, method).observe(&mut rounds).progress(&mut advance).moves(&schedule, &mut state);
+    bar.finish_and_clear();
+    outcome.map(|_| rounds.each()).map_err(|error| CliError::Computation(vec![format!("{name}: {error}")]))
 }
 
 impl MeasuredPhase {
+    /// Measures the turns of the scene's loops along `path`.
+    fn of(scene: &Scene, path: &ClosedPath, method: &Method, loops: u64) -> Result<Self, CliError> {
+        let period = path.period();
+        let steps = steps_of_a_loop(scene, period, loops)?;
+        let turned = |scene: &Scene, loops: u64| turns(scene, method, [loops, steps], period);
+        let turns = turned(scene, loops)?;
+        let (area, offset) = (path.area(), scene.sleigh.offset());
+        let moving = scene.effects.iter().any(|effect| matches!(effect, SceneEffect::Turntable { .. }));
+        let exact = (!moving).then(|| path.holonomy(offset)).transpose()?;
+        let mut curvature = None;
+        if area != 0.0 && !moving {
+            let mut ratios = Vec::new();
+            for k in 1..=HALVINGS {
+                let size = 0.5_f64.powi(k);
+                ratios.push((size, turned(&smaller(scene, size)?, 1)?[0] / (size * size * area)));
+            }
+            curvature = Some(-at_zero(&ratios));
+        }
+        let step = period / steps as f64;
+        let (method, heading) = (method.info().name, scene.start.heading);
+        Ok(Self { method, step, period, turns, area, curvature, exact, heading, offset })
+    }
+
     fn mean(&self) -> f64 {
         weighted_mean(&self.turns).unwrap_or(f64::NAN)
     }
@@ -159,80 +141,88 @@ impl MeasuredPhase {
             self.turns.iter().scan(self.heading, |heading, turn| Some(std::mem::replace(heading, *heading + turn)));
         turned.map(|heading| (heading + PI).rem_euclid(TAU) - PI)
     }
-}
 
-fn circle_map(scene: &Scene, measured: &MeasuredPhase) -> Chart {
-    let points = measured.headings().zip(&measured.turns).map(|(heading, turn)| vec![[heading, *turn]]).collect();
-    let mut layers = Vec::new();
-    if let Some(exact) = &measured.exact {
-        let curve = (0..=POINTS).map(|k| {
-            let heading = TAU * f64::from(k) / f64::from(POINTS) - PI;
-            [heading, exact.turn(heading)]
-        });
-        layers.push(Layer::Curves { label: "exact".to_owned(), curves: vec![curve.collect()] });
-    }
-    layers.push(Layer::Curves { label: "measured".to_owned(), curves: points });
-    Chart {
-        title: format!("{}: turn of a loop", scene.title),
-        axes: ["heading before the loop [rad]".to_owned(), "turn of the loop [rad]".to_owned()],
-        decades: [false; 2],
-        layers,
-    }
-}
-
-fn object(scene: &Scene, method: &Method, path: &ClosedPath, measured: &MeasuredPhase) -> Value {
-    let exact = measured.exact.as_ref().map(|exact| {
-        json!({
-            "turn": exact.turn(measured.heading),
-            "mean_turn": exact.mean_turn(),
-            "trace": exact.map().trace(),
-            "matrix": exact.map().matrix(),
-            "fixed_headings": exact.map().fixed_headings(),
-        })
-    });
-    json!({
-        "scene": scene.name,
-        "method": method.info().name,
-        "step": measured.step,
-        "period": path.period(),
-        "loops": measured.turns.len(),
-        "turn": measured.turns.first(),
-        "last_turn": measured.turns.last(),
-        "mean_turn": measured.mean(),
-        "area": measured.area,
-        "area_law": measured.area_law(),
-        "curvature": measured.curvature,
-        "class": measured.exact.as_ref().map(|exact| exact.map().class().name()),
-        "exact": exact,
-    })
-}
-
-fn text(scene: &Scene, method: &Method, measured: &MeasuredPhase) -> String {
-    let number = |x: f64| table::number(x);
-    let law = measured.area_law();
-    let [first, last] = [measured.turns.first(), measured.turns.last()].map(|turn| turn.copied().unwrap_or(f64::NAN));
-    let mut lines = vec![
-        ("scene", format!("{} ({})", scene.title, scene.name)),
-        ("method", format!("{}, steps of {} s", method.info().name, number(measured.step))),
-        ("loops", measured.turns.len().to_string()),
-        ("turn", format!("{} rad in the first loop, {} rad in the last", number(first), number(last))),
-        ("mean turn", format!("{} rad a loop", number(measured.mean()))),
-        ("area", format!("{} m^2; area / a^2 = {} rad", number(measured.area), number(law))),
-    ];
-    if let Some(curvature) = measured.curvature {
-        let known = -1.0 / (measured.offset * measured.offset);
-        lines.push(("curvature", format!("{} 1/m^2 in the limit; -1/a^2 = {}", number(curvature), number(known))));
-    }
-    if let Some(exact) = &measured.exact {
-        let map = exact.map();
-        let (turn, mean) = (exact.turn(measured.heading), exact.mean_turn());
-        lines.push(("exact", format!("{} rad in the first loop, {} rad in the mean", number(turn), number(mean))));
-        lines.push(("map", format!("{}, |trace| = {}", map.class().name(), number(map.trace()))));
-        let fixed = map.fixed_headings();
-        if let Some(first) = fixed.first() {
-            let what = if fixed.len() == 1 { "that stays" } else { "that attracts all others" };
-            lines.push(("heading", format!("{} rad {what}", number(*first))));
+    fn circle_map(&self, scene: &Scene) -> Chart {
+        let points = self.headings().zip(&self.turns).map(|(heading, turn)| vec![[heading, *turn]]).collect();
+        let mut layers = Vec::new();
+        if let Some(exact) = &self.exact {
+            let curve = (0..=POINTS).map(|k| {
+                let heading = TAU * f64::from(k) / f64::from(POINTS) - PI;
+                [heading, exact.turn(heading)]
+            });
+            layers.push(Layer::Curves { label: "exact".to_owned(), curves: vec![curve.collect()] });
+        }
+        layers.push(Layer::Curves { label: "measured".to_owned(), curves: points });
+        Chart {
+            title: format!("{}: turn of a loop", scene.title),
+            axes: ["heading before the loop [rad]".to_owned(), "turn of the loop [rad]".to_owned()],
+            decades: [false; 2],
+            layers,
         }
     }
-    table::aligned(&lines)
+
+    fn object(&self, scene: &Scene) -> Value {
+        let exact = self.exact.as_ref().map(|exact| {
+            json!({
+                "turn": exact.turn(self.heading),
+                "mean_turn": exact.mean_turn(),
+                "trace": exact.map().trace(),
+                "matrix": exact.map().matrix(),
+                "fixed_headings": exact.map().fixed_headings(),
+            })
+        });
+        json!({
+            "scene": scene.name,
+            "method": self.method,
+            "step": self.step,
+            "period": self.period,
+            "loops": self.turns.len(),
+            "turn": self.turns.first(),
+            "last_turn": self.turns.last(),
+            "mean_turn": self.mean(),
+            "area": self.area,
+            "area_law": self.area_law(),
+            "curvature": self.curvature,
+            "class": self.exact.as_ref().map(|exact| exact.map().class().name()),
+            "exact": exact,
+        })
+    }
+
+    fn text(&self, scene: &Scene) -> String {
+        let law = self.area_law();
+        let [first, last] = [self.turns.first(), self.turns.last()].map(|turn| turn.copied().unwrap_or(f64::NAN));
+        let mut lines = vec![
+            ("scene", format!("{} ({})", scene.title, scene.name)),
+            ("method", format!("{}, steps of {} s", self.method, table::number(self.step))),
+            ("loops", self.turns.len().to_string()),
+            (
+                "turn",
+                format!("{} rad in the first loop, {} rad in the last", table::number(first), table::number(last)),
+            ),
+            ("mean turn", format!("{} rad a loop", table::number(self.mean()))),
+            ("area", format!("{} m^2; area / a^2 = {} rad", table::number(self.area), table::number(law))),
+        ];
+        if let Some(curvature) = self.curvature {
+            let known = -1.0 / (self.offset * self.offset);
+            lines.push((
+                "curvature",
+                format!("{} 1/m^2 in the limit; -1/a^2 = {}", table::number(curvature), table::number(known)),
+            ));
+        }
+        if let Some(exact) = &self.exact {
+            let map = exact.map();
+            let (turn, mean) = (exact.turn(self.heading), exact.mean_turn());
+            lines.push((
+                "exact",
+                format!("{} rad in the first loop, {} rad in the mean", table::number(turn), table::number(mean)),
+            ));
+            lines.push(("map", format!("{}, |trace| = {}", map.class().name(), table::number(map.trace()))));
+            let fixed = map.fixed_headings();
+            if let Some(first) = fixed.first() {
+                let what = if fixed.len() == 1 { "that stays" } else { "that attracts all others" };
+                lines.push(("heading", format!("{} rad {what}", table::number(*first))));
+            }
+        }
+        table::aligned(&lines)
+    }
 }

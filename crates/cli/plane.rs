@@ -9,21 +9,15 @@ use std::str::FromStr;
 pub(crate) struct Plane {
     /// As it was written.
     pub(crate) text: String,
-    what: What,
+    surface: Surface<String>,
 }
 
+/// A surface, with the name of its quantity, or with the quantity in a system.
 #[derive(Debug, Clone)]
-enum What {
+pub(crate) enum Surface<Q> {
     /// A quantity that has a value.
-    Of(String, f64),
+    Of(Q, f64),
     /// Every multiple of a period (s).
-    Period(f64),
-}
-
-/// The surface in a system.
-#[derive(Debug, Clone)]
-pub(crate) enum Surface {
-    Of(Coordinate, f64),
     Period(f64),
 }
 
@@ -40,11 +34,7 @@ pub(crate) enum Crossed {
 
 impl Crossed {
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Rising => "rising",
-            Self::Falling => "falling",
-            Self::Both => "both",
-        }
+        ["rising", "falling", "both"][self as usize]
     }
 }
 
@@ -64,41 +54,41 @@ impl FromStr for Plane {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let what = match name_and_value(text, ACCEPTED)? {
+        let surface = match name_and_value(text, ACCEPTED)? {
             (name, period) if name == "t" && period <= 0.0 => {
                 return Err(format!("the period must be greater than 0; {ACCEPTED}"));
             }
-            (name, period) if name == "t" => What::Period(period),
-            (name, value) => What::Of(name, value),
+            (name, period) if name == "t" => Surface::Period(period),
+            (name, value) => Surface::Of(name, value),
         };
-        Ok(Self { text: text.to_owned(), what })
+        Ok(Self { text: text.to_owned(), surface })
     }
 }
 
 impl Plane {
     /// The period of a section in time (s).
     pub(crate) fn period(&self) -> Option<f64> {
-        if let What::Period(period) = self.what { Some(period) } else { None }
+        if let Surface::Period(period) = self.surface { Some(period) } else { None }
     }
 
     /// The surface in a system.
     ///
     /// # Errors
     /// The message if the system has no such quantity.
-    pub(crate) fn on(&self, system: &Built<'_>) -> Result<Surface, String> {
-        Ok(match &self.what {
-            What::Of(name, value) => {
+    pub(crate) fn on(&self, system: &Built<'_>) -> Result<Surface<Coordinate>, String> {
+        Ok(match &self.surface {
+            Surface::Of(name, value) => {
                 let quantity = Coordinate::of(system, name).map_err(|error| format!("{error}, or t; {ACCEPTED}"))?;
                 Surface::Of(quantity, *value)
             }
-            What::Period(period) => Surface::Period(*period),
+            Surface::Period(period) => Surface::Period(*period),
         })
     }
 
     /// The default axes of a section: for a sleigh by the quantity of the plane; otherwise the first coordinate that is not the plane's, and its
     /// rate.
     pub(crate) fn axes(&self, system: &Built<'_>) -> [String; 2] {
-        let name = if let What::Of(name, _) = &self.what { name.as_str() } else { "t" };
+        let name = if let Surface::Of(name, _) = &self.surface { name.as_str() } else { "t" };
         let axes = match name {
             "heading" => ["speed", "turn_rate"],
             "turn_rate" => ["heading", "speed"],
@@ -118,7 +108,7 @@ impl Plane {
     }
 }
 
-impl Surface {
+impl Surface<Coordinate> {
     /// The function whose zeros are on the surface; of an angle, also the opposite ones.
     pub(crate) fn value(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
         match self {

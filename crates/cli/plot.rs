@@ -3,13 +3,13 @@
 use crate::args::{PlotArguments, Size};
 use crate::called::Caller;
 use crate::columns_file::{self, Columns, NamedColumn};
-use crate::compare::methods;
 use crate::error::CliError;
 use crate::file_roles::FileRoles;
 use crate::in_memory::{self, RunRequest};
+use crate::provenance::label;
 use crate::{files, inspect, table, terminal};
 use report::{FigureFormat, MOST_PIXELS, Panel, Paper, Sheet, sheet};
-use scene::{AnyScene, Overrides};
+use scene::{AnyScene, Column, Overrides};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -24,12 +24,8 @@ const PATH: &str = "path";
 pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
     let PlotArguments { input, columns, size: Size(size), dpi, force, .. } = arguments;
     let path = scene::path_of(input);
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let file = matches!(ending.as_deref(), Some("csv" | "npz")).then_some(path.as_path());
-    let scene = match file {
-        Some(_) => None,
-        None => Some(load(arguments)?),
-    };
+    let file = matches!(files::ending(&path).as_str(), "csv" | "npz").then_some(path.as_path());
+    let scene = if file.is_some() { None } else { Some(load(arguments)?) };
     let name = scene.as_ref().map_or_else(|| stem(input), |scene| scene.name().to_owned());
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.svg")));
     let format = format_of(&out)?;
@@ -78,18 +74,13 @@ fn stem(path: &str) -> String {
 }
 
 fn format_of(path: &Path) -> Result<FigureFormat, CliError> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("svg") => Ok(FigureFormat::Svg),
-        Some("png") => Ok(FigureFormat::Png),
-        Some("pdf") => Ok(FigureFormat::Pdf),
+    match files::ending(path).as_str() {
+        "svg" => Ok(FigureFormat::Svg),
+        "png" => Ok(FigureFormat::Png),
+        "pdf" => Ok(FigureFormat::Pdf),
         _ => {
-            let problem = format!(
-                "{}: a picture is written as .svg, .png or .pdf, by the ending of the \
-                name",
-                path.display()
-            );
-            Err(CliError::Request(problem))
+            let problem = "a picture is written as .svg, .png or .pdf, by the ending of the name";
+            Err(CliError::Request(format!("{}: {problem}", path.display())))
         }
     }
 }
@@ -109,11 +100,11 @@ pub(crate) fn made(
     names: Option<&[String]>,
     failures: &mut Vec<String>,
 ) -> Result<Vec<(String, Columns)>, CliError> {
-    let names: Vec<&str> = match names {
-        Some(names) => names.iter().map(|name| name.trim()).collect(),
+    let names = match names {
+        Some(_) => inspect::listed(names),
         None => vec![scene.run().method.as_str()],
     };
-    methods(&names, scene.run().alpha, scene.run().tolerance)?;
+    inspect::methods(&names, scene.run().alpha, scene.run().tolerance)?;
     let request = RunRequest { every: scene.run().steps().div_ceil(NODES), ..RunRequest::default() };
     names.iter().map(|method| run(scene, method, &request, failures)).collect()
 }
@@ -133,7 +124,7 @@ fn run(
     })?;
     failures.extend(result.failure);
     let columns = result.columns.into_iter().zip(result.numbers);
-    let columns = columns.map(|(column, values)| NamedColumn { name: column.name, unit: Some(column.unit), values });
+    let columns = columns.map(|(Column { name, unit, .. }, values)| NamedColumn { name, unit, values });
     Ok((method.to_owned(), columns.collect()))
 }
 
@@ -171,10 +162,9 @@ pub(crate) fn drawing(
 fn panel(name: &str, runs: &[(String, Columns)]) -> Panel {
     let (across, up) = if name == PATH { ("x", "y") } else { ("t", name) };
     let column = |columns: &'_ Columns, name: &str| columns.iter().find(|column| column.name == name).cloned();
-    let unit = |name: &str| runs.first().and_then(|(_, columns)| column(columns, name)).and_then(|column| column.unit);
     let title = |name: &str| {
-        let unit = unit(name).filter(|unit| !unit.is_empty()).map_or_else(String::new, |unit| format!(" [{unit}]"));
-        format!("{}{unit}", words(name))
+        let unit = runs.first().and_then(|(_, columns)| column(columns, name)).map_or_else(String::new, |of| of.unit);
+        label(&Column::new(words(name), unit))
     };
     let mut axes = [title(across), title(up)];
     let mut curves: Vec<Vec<[f64; 2]>> = runs

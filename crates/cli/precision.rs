@@ -1,20 +1,18 @@
 use crate::args::PrecisionArguments;
 use crate::command_line::CommandLine;
-use crate::compare::{exact, methods, place_at, unless_interrupted};
-use crate::error::CliError;
+use crate::compare::{exact, place_at};
+use crate::error::{CliError, unless_interrupted};
 use crate::file_roles::FileRoles;
 use crate::files::ClaimedFolder;
-use crate::inspect::method_names;
+use crate::inspect::{listed, methods};
 use crate::interrupt::Interrupt;
-use crate::measurement::{KnownEnd, Measurement};
-use crate::progress::Interruptible;
 use crate::provenance::{Provenance, metadata_of};
-use crate::{facts, files, inspect, notes, points_file, precision_csv, precision_text, progress, terminal};
+use crate::{facts, files, inspect, points_file, precision_text, progress, terminal};
 use harness::Method;
 use harness::precision::{
-    Bench, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
+    Bench, Clock, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
 };
-use scene::{AnyScene, Built};
+use scene::{AnyScene, Overrides};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -29,15 +27,34 @@ const HALVINGS: u32 = 6;
 /// Errors below this multiple of the reference's error count as equal.
 const CLEAR: f64 = 10.0;
 
+/// The measurements of a scene.
+pub(crate) struct Measurement {
+    /// How long the motion takes (s).
+    pub(crate) duration: f64,
+    pub(crate) reference: KnownEnd,
+    pub(crate) clock: Clock,
+    pub(crate) facts: Vec<(String, String)>,
+    pub(crate) curves: Vec<Curve>,
+}
+
+/// The reference for the end of the motion.
+pub(crate) struct KnownEnd {
+    /// True if the end is known in closed form; false if the method computed it.
+    pub(crate) closed: bool,
+    /// The method that computes it, or that the closed form is checked against.
+    pub(crate) by: &'static str,
+    /// Its steps.
+    pub(crate) steps: u64,
+    /// How far it may be off (m or rad).
+    pub(crate) error: f64,
+    end: Vec<f64>,
+}
+
 /// `noslip precision`: what accuracy costs in time.
 pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> {
-    let mut scene =
-        inspect::load_any_with((&arguments.scene, &arguments.set), None, None, arguments.duration, arguments.alpha)?;
-    let names: Vec<&str> = match &arguments.methods {
-        Some(names) => names.iter().map(|name| name.trim()).collect(),
-        None => method_names(),
-    };
-    let methods = methods(&names, scene.run().alpha, scene.run().tolerance)?;
+    let run = Overrides { duration: arguments.duration, alpha: arguments.alpha, ..Overrides::default() };
+    let mut scene = inspect::load_over((&arguments.scene, &arguments.set), run)?;
+    let methods = methods(&listed(arguments.methods.as_deref()), scene.run().alpha, scene.run().tolerance)?;
     let mut others = Vec::new();
     for path in &arguments.with {
         let (curves, warnings) = points_file::read(path, scene.name())?;
@@ -65,9 +82,9 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     let made = unfinished(&measured, climbed, methods.len()).filter(|_| interrupt.asked());
     let provenance = provenance(arguments, &scene, &measured).interrupted(made.as_deref());
     if let Some(path) = &arguments.csv {
-        let text = precision_csv::text(&measured.curves);
+        let text = precision_text::csv(&measured.curves);
         files::write_whole(path, arguments.force, |file| std::io::Write::write_all(file, text.as_bytes()))?;
-        provenance.write_beside(path, precision_csv::described())?;
+        provenance.write_beside(path, &precision_text::described())?;
     }
     if let Some(folder) = &folder {
         let report = precision_text::report(&scene, &measured, &provenance);
@@ -103,25 +120,12 @@ fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measu
     let command = CommandLine::of("precision", &arguments.scene, &arguments.set);
     let command = command.maybe("--methods", methods.as_ref().map(|methods| methods.join(",")));
     let command = command.number("--duration", measured.duration);
-    let command = command.maybe("--alpha", alpha.map(|alpha| format!("{alpha:?}"))).number("--longest", *longest);
+    let command = command.maybe_number("--alpha", *alpha).number("--longest", *longest);
     let command = with.iter().fold(command, |command, path| command.with("--with", path.display()));
     let command = command.maybe("--csv", csv.as_ref().map(|path| path.display()));
     let command = command.maybe("--report", report.as_ref().map(|path| path.display()));
     let notes = json!({"duration": measured.duration, "reference": precision_text::reference(measured)});
-    Provenance::on((scene.title(), scene.to_toml().ok()), Some(&command), notes)
-}
-
-/// Measures what accuracy costs on a scene, by runs of `longest` (s) at most. A duration that is `chosen` for the user may be shortened.
-pub(crate) fn measure(
-    scene: &AnyScene,
-    methods: &[Method],
-    longest: f64,
-    chosen: bool,
-    interrupt: &Interrupt,
-) -> Result<Measurement, CliError> {
-    notes::moves(scene);
-    let built = scene.built()?;
-    Measure { scene, methods, longest, chosen, interrupt }.on(&built.system(), (&built.q, &built.v))
+    Provenance::on(scene, Some(&command), notes)
 }
 
 /// The reason that a method has no point at all; a refusal counts only if the user named the method.
@@ -134,57 +138,55 @@ fn failure(curve: &Curve, named: bool) -> Option<String> {
     lost.then(|| format!("{}: every run failed; the finest {}", curve.method, reason.unwrap_or_default()))
 }
 
-struct Measure<'a> {
-    scene: &'a AnyScene,
-    methods: &'a [Method],
+/// Measures what accuracy costs on a scene, by runs of `longest` (s) at most. A duration that is `chosen` for the user may be shortened.
+pub(crate) fn measure(
+    scene: &AnyScene,
+    methods: &[Method],
     longest: f64,
-    /// True if the duration is a default, which may be shortened.
     chosen: bool,
-    interrupt: &'a Interrupt,
-}
-
-impl Measure<'_> {
-    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<Measurement, CliError> {
-        let apart = |a: &[f64], b: &[f64]| system.distance(a, b);
-        let mechanism = system.mechanism();
-        let exact = exact(self.scene);
-        let mut duration = self.scene.run().duration;
-        let mut halvings = 0;
-        let (motion, reference) = loop {
-            let motion = ReferenceMotion::new(&*mechanism, q, v, duration);
-            if system.train().is_some() {
-                let reference = of_train(&motion, apart)?;
-                break (motion, Ok(reference));
-            }
-            let reference = Reference::converged(&motion, &apart).map(|found| {
-                let exact = exact.as_ref().map(|exact| place_at(exact, duration));
-                known(exact, &found, apart)
-            });
-            let unsure = reference.as_ref().map_or(true, |reference| reference.error > KNOWN);
-            if !(self.chosen && unsure && halvings < HALVINGS) {
-                break (motion, reference);
-            }
-            duration *= 0.5;
-            halvings += 1;
-        };
-        let reference = reference.map_err(|error: ReferenceError| CliError::Computation(vec![error.to_string()]))?;
-        let end_error = |method: &Method, steps: u64| motion.end(method, steps).map(|q| apart(&q, &reference.end));
-        let aligned = |steps: u64| motion.aligned(steps);
-        let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
-        let limits = LadderLimits { fewest: motion.aligned(2), longest: self.longest };
-        let bar = progress::bar(&format!("{} precision", self.scene.name()), self.methods.len() as u64 + rounds());
-        let mut progress = Interruptible { bar, interrupt: self.interrupt };
-        let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut progress);
-        progress.bar.finish_and_clear();
-        let mut facts = facts::of(self.scene)?;
-        // The last fact gives the scene's steps; these runs use the steps of the ladders.
-        facts.pop();
-        Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
-    }
+    interrupt: &Interrupt,
+) -> Result<Measurement, CliError> {
+    inspect::moves(scene);
+    let built = scene.built()?;
+    let (system, q, v) = (built.system(), &built.q, &built.v);
+    let apart = |a: &[f64], b: &[f64]| system.distance(a, b);
+    let mechanism = system.mechanism();
+    let exact = exact(scene);
+    let mut duration = scene.run().duration;
+    let mut halvings = 0;
+    let (motion, reference) = loop {
+        let motion = ReferenceMotion::new(&*mechanism, q, v, duration);
+        if system.train().is_some() {
+            let reference = of_train(&motion, apart)?;
+            break (motion, Ok(reference));
+        }
+        let reference = Reference::converged(&motion, &apart).map(|found| {
+            let exact = exact.as_ref().map(|exact| place_at(exact, duration));
+            known(exact, &found, apart)
+        });
+        let unsure = reference.as_ref().map_or(true, |reference| reference.error > KNOWN);
+        if !(chosen && unsure && halvings < HALVINGS) {
+            break (motion, reference);
+        }
+        duration *= 0.5;
+        halvings += 1;
+    };
+    let reference = reference.map_err(|error: ReferenceError| CliError::Computation(vec![error.to_string()]))?;
+    let end_error = |method: &Method, steps: u64| motion.end(method, steps).map(|q| apart(&q, &reference.end));
+    let aligned = |steps: u64| motion.aligned(steps);
+    let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
+    let limits = LadderLimits { fewest: motion.aligned(2), longest };
+    let (label, steps) = (format!("{} precision", scene.name()), methods.len() as u64 + rounds());
+    let (curves, clock) =
+        progress::shown(&label, steps, interrupt, |progress| work_precision(&bench, methods, &limits, progress));
+    let mut facts = facts::of(scene)?;
+    // The last fact gives the scene's steps; these runs use the steps of the ladders.
+    facts.pop();
+    Ok(Measurement { duration, reference, clock, facts, curves })
 }
 
 /// The end in closed form, with its distance from the computed end as its error; the computed end if there is no closed form.
-fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &[f64]) -> f64) -> KnownEnd<Vec<f64>> {
+fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &[f64]) -> f64) -> KnownEnd {
     let (end, steps, error) = (computed.q.clone(), computed.steps, computed.error);
     match exact {
         Some(exact) => {
@@ -196,15 +198,12 @@ fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &
 }
 
 /// The end of a train by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.
-fn of_train(
-    motion: &ReferenceMotion<'_>,
-    apart: impl Fn(&[f64], &[f64]) -> f64,
-) -> Result<KnownEnd<Vec<f64>>, CliError> {
+fn of_train(motion: &ReferenceMotion<'_>, apart: impl Fn(&[f64], &[f64]) -> f64) -> Result<KnownEnd, CliError> {
     /// Of one run.
     const LONG: Duration = Duration::from_secs(10);
     const FEWEST: u64 = 32;
     let dla8 = Method::named("dla8", None)?;
-    let mut best: Option<KnownEnd<Vec<f64>>> = None;
+    let mut best: Option<KnownEnd> = None;
     let (mut before, mut steps, mut failure) = (None, FEWEST, String::new());
     while steps <= FEWEST << 12 {
         let clock = Instant::now();

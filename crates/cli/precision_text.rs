@@ -1,9 +1,9 @@
 //! The results of `noslip precision`: the same values as a table, as JSON and in the report.
 
+use crate::format::quoted;
 use crate::json::failure;
-use crate::measurement::Measurement;
-use crate::precision_csv::{self, points, settings};
-use crate::provenance::Provenance;
+use crate::precision::Measurement;
+use crate::provenance::{Provenance, headed};
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, seconds_to};
 use report::{CostCurve, CostPoint, Numbers, Report, SceneReport, Table, file_stem};
@@ -31,12 +31,22 @@ fn shown(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), number)
 }
 
+/// Step, tolerance, steps, error, times and spread of a point; `missing` stands for a number that the point does not have.
+fn fields(point: &PrecisionPoint, missing: &str, number: fn(f64) -> String) -> [String; 7] {
+    let shown = |value: Option<f64>| value.map_or_else(|| missing.to_owned(), number);
+    let [step, tolerance] = match point.setting {
+        Some(RungSetting::Step(step)) => [Some(step), None],
+        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
+        None => [None, None],
+    };
+    let steps = point.steps.map_or_else(|| missing.to_owned(), |steps| steps.to_string());
+    let [error, wall, cpu, spread] = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(shown);
+    [shown(step), shown(tolerance), steps, error, wall, cpu, spread]
+}
+
 /// A row of the table of points, and what follows it.
 fn cells(curve: &Curve, point: &PrecisionPoint) -> (Vec<String>, String) {
-    let [step, tolerance] = settings(point);
-    let steps = point.steps.map_or_else(|| "-".to_owned(), |steps| steps.to_string());
-    let numbers = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(shown);
-    let cells = [curve.label(), shown(step), shown(tolerance), steps].into_iter().chain(numbers).collect();
+    let cells = std::iter::once(curve.label()).chain(fields(point, "-", number)).collect();
     let mark = point.mark.as_ref().map(ToString::to_string);
     let notes: Vec<String> = point.pareto.then(|| "pareto".to_owned()).into_iter().chain(mark).collect();
     (cells, notes.join(", "))
@@ -213,6 +223,43 @@ fn json_method(curve: &Curve) -> Value {
     object
 }
 
+/// The columns, and the types of their fields.
+const FILE: [(&str, &str); 11] = [
+    ("method", "string"),
+    ("step [s]", "double"),
+    ("tolerance", "double"),
+    ("steps", "integer"),
+    ("error [m or rad]", "double"),
+    ("wall [s]", "double"),
+    ("CPU [s]", "double"),
+    ("spread", "double"),
+    ("mark", "string"),
+    ("pareto", "boolean"),
+    ("source", "string"),
+];
+
+/// The columns, for the file of metadata.
+pub(crate) fn described() -> Vec<Value> {
+    FILE.iter().map(|(heading, datatype)| headed(heading, datatype)).collect()
+}
+
+/// The points, one on a line, with all digits.
+pub(crate) fn csv(curves: &[Curve]) -> String {
+    let mut text = FILE.map(|(heading, _)| heading).join(",") + "\n";
+    for (_, point) in points(curves) {
+        let mark = point.mark.as_ref().map_or_else(String::new, ToString::to_string);
+        let source = point.source.as_deref().unwrap_or_default();
+        let numbers = fields(point, "", harness::precision::number).join(",");
+        let (method, mark, pareto) = (quoted(&point.method), quoted(&mark), point.pareto);
+        let _ = writeln!(text, "{method},{numbers},{mark},{pareto},{}", quoted(source));
+    }
+    text
+}
+
+fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &PrecisionPoint)> {
+    curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
+}
+
 /// The curve of a method in the diagrams.
 fn drawn(curve: &Curve) -> CostCurve {
     let label = curve.label();
@@ -252,15 +299,15 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Prov
             .collect(),
     };
     let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
-    let csv = format!("{}.csv", file_stem(scene.name()));
+    let file = format!("{}.csv", file_stem(scene.name()));
     let shown = SceneReport {
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
         facts,
         costs: Some(measured.curves.iter().map(drawn).collect()),
         numbers: vec![
-            Numbers { ending: "csv", text: precision_csv::text(&measured.curves) },
-            Numbers { ending: "csv-metadata.json", text: provenance.document(&csv, precision_csv::described()) },
+            Numbers { ending: "csv", text: csv(&measured.curves) },
+            Numbers { ending: "csv-metadata.json", text: provenance.document(&file, &described()) },
             Numbers { ending: "json", text: format!("{:#}\n", json(scene, measured)) },
         ],
         ..SceneReport::default()

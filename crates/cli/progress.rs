@@ -15,10 +15,41 @@ pub(crate) fn bar(label: &str, steps: u64) -> ProgressBar {
     bar
 }
 
+/// Does work under a bar of `steps` steps; a signal ends the work.
+pub(crate) fn shown<T>(
+    label: &str,
+    steps: u64,
+    interrupt: &Interrupt,
+    work: impl FnOnce(&mut Interruptible<'_>) -> T,
+) -> T {
+    let mut progress = Interruptible { bar: bar(label, steps), interrupt };
+    let done = work(&mut progress);
+    progress.bar.finish_and_clear();
+    done
+}
+
+/// Makes `count` things on all threads, under a bar; `None` for those that had not begun when a signal came.
+pub(crate) fn in_parallel<T: Send>(
+    label: &str,
+    count: usize,
+    interrupt: &Interrupt,
+    each: impl Fn(usize) -> T + Sync,
+) -> Vec<Option<T>> {
+    let bar = bar(label, count as u64);
+    let one = |i: usize| {
+        let made = (!interrupt.asked()).then(|| each(i));
+        bar.inc(u64::from(made.is_some()));
+        made
+    };
+    let made = harness::analysis::in_parallel(count, one);
+    bar.finish_and_clear();
+    made
+}
+
 /// A bar whose work Ctrl-C ends.
 pub(crate) struct Interruptible<'a> {
-    pub(crate) bar: ProgressBar,
-    pub(crate) interrupt: &'a Interrupt,
+    bar: ProgressBar,
+    interrupt: &'a Interrupt,
 }
 
 impl Progress for Interruptible<'_> {

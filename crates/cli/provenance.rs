@@ -2,7 +2,7 @@ use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::files::write_whole;
 use crate::program;
-use scene::Column;
+use scene::{AnyScene, Column};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -28,11 +28,11 @@ impl Provenance {
 
     /// The provenance of rows that are computed on a scene: its title, and its text with all numbers as they were used, including changes
     /// by the command line.
-    pub(crate) fn on((title, text): (&str, Option<String>), command: Option<&CommandLine>, mut notes: Value) -> Self {
-        if let Some(text) = text {
+    pub(crate) fn on(scene: &AnyScene, command: Option<&CommandLine>, mut notes: Value) -> Self {
+        if let Ok(text) = scene.to_toml() {
             notes["scene"] = json!(text);
         }
-        Self::new(title, command, notes)
+        Self::new(scene.title(), command, notes)
     }
 
     /// Adds how far the work came, if a signal ended it.
@@ -42,12 +42,7 @@ impl Provenance {
     }
 
     /// The document of a file of that name, with a newline at its end.
-    pub(crate) fn document<D: Into<DescribedColumn>>(
-        &self,
-        name: &str,
-        columns: impl IntoIterator<Item = D>,
-    ) -> String {
-        let columns: Vec<Value> = columns.into_iter().map(|column| column.into().object()).collect();
+    pub(crate) fn document(&self, name: &str, columns: &[Value]) -> String {
         let document = json!({
             "@context": "http://www.w3.org/ns/csvw",
             "url": name,
@@ -59,11 +54,7 @@ impl Provenance {
     }
 
     /// Writes the document of a file of text beside it.
-    pub(crate) fn write_beside<D: Into<DescribedColumn>>(
-        &self,
-        path: &Path,
-        columns: impl IntoIterator<Item = D>,
-    ) -> Result<(), CliError> {
+    pub(crate) fn write_beside(&self, path: &Path, columns: &[Value]) -> Result<(), CliError> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let document = self.document(&name, columns);
         write_whole(&metadata_of(path), true, |file| file.write_all(document.as_bytes()))
@@ -77,38 +68,28 @@ pub(crate) fn metadata_of(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// A column as a document describes it.
-#[derive(Debug, Clone)]
-pub(crate) struct DescribedColumn {
-    title: String,
-    name: String,
-    unit: String,
-    /// The type of its fields, by its name in XML Schema.
-    datatype: &'static str,
-}
-
-impl DescribedColumn {
-    /// By its heading, `NAME [UNIT]` or `NAME`; a name in the document has no spaces.
-    pub(crate) fn headed(heading: &str, datatype: &'static str) -> Self {
-        let (name, unit) = named(heading);
-        let unit = unit.unwrap_or_default().to_owned();
-        Self { title: heading.to_owned(), name: name.replace(' ', "_"), unit, datatype }
-    }
-
-    fn object(self) -> Value {
-        let mut object = json!({"titles": self.title, "name": self.name, "datatype": self.datatype});
-        if !self.unit.is_empty() {
-            object["schema:unitText"] = json!(self.unit);
-        }
-        object
-    }
-}
-
-impl From<&Column> for DescribedColumn {
-    fn from(column: &Column) -> Self {
+/// Columns as a document describes them.
+pub(crate) fn described(columns: &[Column]) -> Vec<Value> {
+    let one = |column: &Column| {
         let datatype = if column.whole { "integer" } else { "double" };
-        Self { title: label(column), name: column.name.clone(), unit: column.unit.clone(), datatype }
+        object(&label(column), &column.name, &column.unit, datatype)
+    };
+    columns.iter().map(one).collect()
+}
+
+/// The description of a column by its heading, `NAME [UNIT]` or `NAME`, and the type of its fields, by its name in XML Schema; a name in the
+/// document has no spaces.
+pub(crate) fn headed(heading: &str, datatype: &str) -> Value {
+    let (name, unit) = named(heading);
+    object(heading, &name.replace(' ', "_"), unit.unwrap_or_default(), datatype)
+}
+
+fn object(title: &str, name: &str, unit: &str, datatype: &str) -> Value {
+    let mut object = json!({"titles": title, "name": name, "datatype": datatype});
+    if !unit.is_empty() {
+        object["schema:unitText"] = json!(unit);
     }
+    object
 }
 
 /// A column as a header shows it.

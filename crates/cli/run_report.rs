@@ -4,23 +4,21 @@ use crate::args::RunArguments;
 use crate::columns_file::{Columns, NamedColumn};
 use crate::error::CliError;
 use crate::files::ClaimedFolder;
+use crate::provenance::label;
 use crate::{facts, inspect, plot, table, terminal, train};
 use report::{HEADINGS, Report, SceneReport, Series};
-use scene::AnyScene;
+use scene::{AnyScene, Column};
 
 /// Makes the run, and its page if one is asked for. For the page it is made a second time, with fewer nodes kept.
 pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let Some(folder) = &arguments.report else { return crate::run::run(arguments) };
     let shared = &arguments.scene;
     if shared.scene == "-" {
-        return Err(CliError::Request(
-            "--report reads the scene twice, and the standard input can be read only \
-            once"
-                .to_owned(),
-        ));
+        let problem = "--report reads the scene twice, and the standard input can be read only once";
+        return Err(CliError::Request(problem.to_owned()));
     }
     let folder = ClaimedFolder::new(folder, shared.force)?;
-    let scene = inspect::load_any(shared, arguments.method.as_deref())?;
+    let scene = inspect::load(shared, arguments.method.as_deref())?;
     let outcome = crate::run::run(arguments);
     // A run that failed on the way is shown as far as it came.
     if !matches!(outcome, Ok(()) | Err(CliError::Computation(_))) {
@@ -65,10 +63,9 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
 fn row(NamedColumn { name, unit, values }: &NamedColumn) -> Vec<String> {
     let [least, largest] =
         values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)]);
-    let unit = unit.as_ref().filter(|unit| !unit.is_empty()).map_or_else(String::new, |unit| format!(" [{unit}]"));
     let ends = [values.first(), values.last()].map(|x| x.copied().unwrap_or(f64::NAN));
     let numbers = [ends[0], ends[1], least, largest].map(|x| table::number(format!("{x:.5e}").parse().unwrap_or(x)));
-    std::iter::once(format!("{name}{unit}")).chain(numbers).collect()
+    std::iter::once(label(&Column::new(name, unit))).chain(numbers).collect()
 }
 
 /// The curves of the run in the pictures of a page.

@@ -1,58 +1,20 @@
+use crate::analysis::{Analysis, AnalysisResult, with_wanted_energy};
 use crate::args::SectionArguments;
-use crate::chart_file::ChartFile;
-use crate::command_line::CommandLine;
-use crate::compare::unless_interrupted;
 use crate::coordinate::Coordinate;
 use crate::error::CliError;
-use crate::exponents::{asked, free};
 use crate::interrupt::Interrupt;
-use crate::provenance::Provenance;
 use crate::starts::spread;
 use crate::trigger::{doubts, in_doubt};
-use crate::{inspect, json, notes, progress, table, terminal};
+use crate::{json, progress, terminal};
 use dla::{Close, Event, RunError};
-use harness::Method;
-use harness::analysis::in_parallel;
 use report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, Quantity, StartPlace};
 use serde_json::{Value, json};
 
 /// Default duration of each motion (s).
 const DURATION: f64 = 2000.0;
-/// The most starts, and the most crossings of all of them.
+/// The most starts.
 const MOST_STARTS: u64 = 100_000;
-
-/// `noslip section`: the crossings of a plane by motions.
-pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
-    let shared = &arguments.scene;
-    let duration = shared.duration.or(Some(DURATION));
-    let from = (shared.scene.as_str(), &shared.set);
-    let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = inspect::method(scene.run())?;
-    if arguments.axes.as_ref().is_some_and(|axes| axes.len() != 2 || axes[0].trim() == axes[1].trim()) {
-        let problem = "--axes: accepted are two different quantities, for example heading,speed";
-        return Err(CliError::Request(problem.to_owned()));
-    }
-    if arguments.starts > MOST_STARTS {
-        return Err(CliError::Request(format!("--starts: accepted is a whole number from 1 to {MOST_STARTS}")));
-    }
-    if arguments.plane.period().is_some_and(|period| period < scene.run().actual_step()) {
-        return Err(CliError::Request(
-            "--plane: the period is shorter than a step; choose a shorter --step".to_owned(),
-        ));
-    }
-    let file = arguments.out.as_deref().map(|path| ChartFile::of(path, &shared.scene, shared.force)).transpose()?;
-    notes::moves(&scene);
-    let built = free(&scene)?;
-    Sections { arguments, scene: &scene, method, file }.on(&built.system(), (&built.q, &built.v))
-}
-
-struct Sections<'a> {
-    arguments: &'a SectionArguments,
-    scene: &'a AnyScene,
-    method: Method,
-    file: Option<ChartFile<'a>>,
-}
 
 /// The crossings of one start.
 struct PlaneCrossing {
@@ -76,188 +38,135 @@ struct SectionPoint {
     shown: [f64; 2],
 }
 
-/// The columns of a section: the quantities of the system that tell its state, and the ones shown.
-struct Told {
-    state: Vec<Column>,
-    axes: [Quantity; 2],
-}
-
-impl Sections<'_> {
-    fn on(self, system: &Built<'_>, (q, v): (&[f64], &[f64])) -> Result<(), CliError> {
-        let plane = &self.arguments.plane;
-        let asked_for = |flag: &'static str| move |problem: String| CliError::Request(format!("{flag}: {problem}"));
-        let surface = plane.on(system).map_err(asked_for("--plane"))?;
-        let axis = |name: &str| Coordinate::of(system, name).map_err(asked_for("--axes"));
-        let axes = match self.arguments.axes.as_deref() {
-            Some([across, up]) => [axis(across)?, axis(up)?],
-            _ => {
-                let [across, up] = plane.axes(system);
-                [axis(&across)?, axis(&up)?]
-            }
-        };
-        if self.scene.depends_on_time() && plane.period().is_none() {
-            terminal::say(
-                "note",
-                &"the scene depends on time, so a point of this section does not determine the motion after it; \
-                    --plane t=PERIOD takes all points at the same phase",
-            );
+/// `noslip section`: the crossings of a plane by motions.
+pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
+    let mut analysis = Analysis::open("section", &arguments.scene, &arguments.method, DURATION)?;
+    let refused = |problem: &str| Err(CliError::Request(problem.to_owned()));
+    if arguments.axes.as_ref().is_some_and(|axes| axes.len() != 2 || axes[0].trim() == axes[1].trim()) {
+        return refused("--axes: accepted are two different quantities, for example heading,speed");
+    }
+    if arguments.starts > MOST_STARTS {
+        return refused(&format!("--starts: accepted is a whole number from 1 to {MOST_STARTS}"));
+    }
+    if arguments.plane.period().is_some_and(|period| period < analysis.scene.run().actual_step()) {
+        return refused("--plane: the period is shorter than a step; choose a shorter --step");
+    }
+    let built = analysis.begin(arguments.out.as_deref())?;
+    let (system, plane) = (&built.system(), &arguments.plane);
+    let wrong = |flag: &'static str| move |problem: String| CliError::Request(format!("{flag}: {problem}"));
+    let surface = plane.on(system).map_err(wrong("--plane"))?;
+    let axis = |name: &str| Coordinate::of(system, name).map_err(wrong("--axes"));
+    let axes = match arguments.axes.as_deref() {
+        Some([across, up]) => [axis(across)?, axis(up)?],
+        _ => {
+            let [across, up] = plane.axes(system);
+            [axis(&across)?, axis(&up)?]
         }
-        let interrupt = Interrupt::listen();
-        let first = asked(system, (q.to_vec(), v.to_vec()), self.arguments.energy)?;
-        let sleigh = if let AnyScene::Sleigh(scene) = self.scene { Some(&scene.sleigh) } else { None };
-        let starts: Vec<StartPlace> = spread(system, &first, sleigh, self.arguments.starts);
-        let schedule = self.scene.schedule();
-        let bar = progress::bar("starts", starts.len() as u64);
-        let in_state = system.in_state();
-        let cross = |i: usize| {
-            if interrupt.asked() {
-                return None;
-            }
-            let function = |t: f64, q: &[f64], v: &[f64]| surface.value(system, t, q, v);
-            let event = Event::new(plane.text.clone(), function);
-            let event =
-                if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section(
-                &*system.mechanism(),
-                &self.method,
-                &schedule,
-                (&starts[i].0, &starts[i].1),
-                &event,
-            );
-            let point = |crossing: &dla::Crossing| {
-                let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
-                surface.holds(system, t, &q, v).then(|| SectionPoint {
-                    t,
-                    state: (0..in_state).map(|k| system.value(k, t, &q, v)).collect(),
-                    shown: axes.each_ref().map(|axis| axis.shown(system, t, &q, v)),
-                })
-            };
-            bar.inc(1);
-            Some(PlaneCrossing {
-                start: i,
-                points: found.crossings.iter().filter_map(point).collect(),
-                failure: found.failure,
-                close: found.close,
-                interrupted: found.interrupted,
+    };
+    if analysis.scene.depends_on_time() && plane.period().is_none() {
+        terminal::say(
+            "note",
+            &"the scene depends on time, so a point of this section does not determine the motion after it; \
+                --plane t=PERIOD takes all points at the same phase",
+        );
+    }
+    let interrupt = Interrupt::listen();
+    let first = with_wanted_energy(system, (built.q.clone(), built.v.clone()), arguments.energy)?;
+    let sleigh = if let AnyScene::Sleigh(scene) = &analysis.scene { Some(&scene.sleigh) } else { None };
+    let starts: Vec<StartPlace> = spread(system, &first, sleigh, arguments.starts);
+    let (schedule, in_state) = (analysis.scene.schedule(), system.in_state());
+    let cross = |start: usize| {
+        let event = Event::new(plane.text.clone(), |t, q: &[f64], v: &[f64]| surface.value(system, t, q, v));
+        let event = if plane.period().is_some() { event } else { event.in_direction(arguments.direction.into()) };
+        let (q, v) = &starts[start];
+        let found = harness::analysis::section(&*system.mechanism(), &analysis.method, &schedule, (q, v), &event);
+        let point = |crossing: &dla::Crossing| {
+            let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
+            surface.holds(system, t, &q, v).then(|| SectionPoint {
+                t,
+                state: (0..in_state).map(|k| system.value(k, t, &q, v)).collect(),
+                shown: axes.each_ref().map(|axis| axis.shown(system, t, &q, v)),
             })
         };
-        let crossed = interrupt.attend(|| in_parallel(starts.len(), cross));
-        bar.finish_and_clear();
-        let done: Vec<PlaneCrossing> = crossed.into_iter().flatten().collect();
-        let whole = done.iter().filter(|one| !one.interrupted).count();
-        let made = (whole < starts.len()).then(|| {
-            let begun = if whole < done.len() { ", those that had begun as far as they came" } else { "" };
-            format!("{whole} of {} starts finished{begun}", starts.len())
-        });
-        let state = system.quantities().iter().take(in_state).map(Quantity::column).collect();
-        let told = Told { state, axes: axes.map(|axis| axis.quantity) };
-        let written = self.tell(&told, &done, made.as_deref());
-        unless_interrupted(made, None, written)
-    }
+        PlaneCrossing {
+            start,
+            points: found.crossings.iter().filter_map(point).collect(),
+            failure: found.failure,
+            close: found.close,
+            interrupted: found.interrupted,
+        }
+    };
+    let crossed = interrupt.attend(|| progress::in_parallel("starts", starts.len(), &interrupt, cross));
+    let crossed: Vec<PlaneCrossing> = crossed.into_iter().flatten().collect();
+    tell(arguments, &analysis, system, &axes.map(|axis| axis.quantity), (&crossed, starts.len()))
 }
 
-impl Sections<'_> {
-    /// The provenance of the points.
-    fn provenance(&self, axes: &[Quantity; 2]) -> Provenance {
-        let SectionArguments { scene: shared, plane, direction, starts, energy, out, .. } = self.arguments;
-        let (run, step) = (self.scene.run(), self.scene.schedule().step);
-        let axes = axes.each_ref().map(|axis| axis.name.as_str());
-        let command = CommandLine::of("section", &shared.scene, &shared.set).run(run, step);
-        let command = command.with("--plane", &plane.text).with("--direction", direction.name());
-        let command = command.with("--axes", axes.join(",")).with("--starts", starts);
-        let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
-        let command = command.maybe("--out", out.as_ref().map(|out| out.display()));
-        let notes = json!({
-            "method": run.method, "step": step, "duration": run.duration, "plane": plane.text,
-            "direction": direction.name(), "axes": axes, "starts": starts,
-        });
-        Provenance::on((self.scene.title(), self.scene.to_toml().ok()), Some(&command), notes)
-    }
+/// Shows the crossings; `starts` counts the starts that were asked for.
+fn tell(
+    arguments: &SectionArguments,
+    analysis: &Analysis<'_>,
+    system: &Built<'_>,
+    axes: &[Quantity; 2],
+    (crossed, starts): (&[PlaneCrossing], usize),
+) -> Result<(), CliError> {
+    let (plane, direction) = (&arguments.plane.text, arguments.direction.name());
+    let names = axes.each_ref().map(|axis| axis.name.as_str());
+    let whole = crossed.iter().filter(|one| !one.interrupted).count();
+    let begun = if whole < crossed.len() { ", those that had begun as far as they came" } else { "" };
 
-    fn tell(&self, told: &Told, crossed: &[PlaneCrossing], interrupted: Option<&str>) -> Result<(), CliError> {
-        let shared = &self.arguments.scene;
-        let written = self.file.map_or(Ok(()), |file| {
-            let row = |i: usize, SectionPoint { t, state, shown }: &SectionPoint| {
-                [&[i as f64, *t][..], state, shown].concat()
-            };
-            let rows: Vec<Vec<f64>> =
-                crossed.iter().flat_map(|one| one.points.iter().map(move |point| row(one.start, point))).collect();
-            // A column of the state is another than the one that is shown: its angles count the turns.
-            let own = |column: Column| match told.state.contains(&column) {
-                true => Column { name: format!("shown_{}", column.name), ..column },
-                false => column,
-            };
-            let mut columns = vec![Column::whole("start"), Column::new("t", "s")];
-            columns.extend(told.state.iter().cloned());
-            columns.extend(told.axes.each_ref().map(Quantity::column).map(own));
-            let provenance = self.provenance(&told.axes).interrupted(interrupted);
-            file.write(shared.force, &provenance, (&columns, &rows), || self.chart(told, crossed))
-        });
-        let count: usize = crossed.iter().map(|start| start.points.len()).sum();
-        if shared.json {
-            terminal::print_json(&self.json(told, crossed))?;
-        } else {
-            let run = self.scene.run();
-            let duration = table::number(run.duration);
-            let lines = [
-                ("scene", format!("{} ({})", self.scene.title(), self.scene.name())),
-                (
-                    "run",
-                    format!(
-                        "{duration} s by {} with steps of {} s, from each start",
-                        run.method,
-                        table::number(run.actual_step())
-                    ),
-                ),
-                ("plane", format!("{}, {}", self.arguments.plane.text, self.arguments.direction.name())),
-                ("starts", crossed.len().to_string()),
-                ("crossings", count.to_string()),
-            ];
-            terminal::print(&table::aligned(&lines.map(|(name, value)| (name.to_owned(), value))))?;
-            if let (Some(path), Ok(())) = (&self.arguments.out, &written) {
-                terminal::print(&format!("written    {}\n", path.display()))?;
-            }
-        }
-        if let Some(close) = crossed.iter().filter_map(|start| start.close).reduce(Close::and) {
-            terminal::say("warning", &format!("{}; a shorter --step samples more times", in_doubt(&close)));
-        }
-        let failed = crossed
-            .iter()
-            .filter_map(|one| one.failure.as_ref().map(|failure| format!("start {}: {failure}", one.start)));
-        CliError::of_failures(failed).and(written)
-    }
+    let state: Vec<Column> = system.quantities().iter().take(system.in_state()).map(Quantity::column).collect();
+    // A column of the state is another than the one that is shown: its angles count the turns.
+    let own = |column: Column| match state.contains(&column) {
+        true => Column { name: format!("shown_{}", column.name), ..column },
+        false => column,
+    };
+    let shown = axes.each_ref().map(Quantity::column).map(own);
+    let row = |start: usize, SectionPoint { t, state, shown }: &SectionPoint| {
+        [&[start as f64, *t][..], state, shown].concat()
+    };
 
-    fn json(&self, told: &Told, crossed: &[PlaneCrossing]) -> Value {
-        let one = |start: &PlaneCrossing| {
-            let points: Vec<Value> = start.points.iter().map(|p| json!([p.t, p.shown[0], p.shown[1]])).collect();
-            let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, doubts)});
-            if start.interrupted {
-                object["interrupted"] = json!(true);
-            }
-            if let Some(failure) = &start.failure {
-                object["failure"] = json!(failure.to_string());
-                object["failed_at"] = json::failure(failure);
-            }
-            object
-        };
-        json!({
-            "scene": self.scene.name(),
-            "method": self.method.info().name,
-            "step": self.scene.run().actual_step(),
-            "duration": self.scene.run().duration,
-            "plane": self.arguments.plane.text,
-            "direction": self.arguments.direction.name(),
-            "axes": told.axes.each_ref().map(|axis| &axis.name),
-            "starts": crossed.iter().map(one).collect::<Vec<_>>(),
-        })
-    }
-
-    fn chart(&self, told: &Told, crossed: &[PlaneCrossing]) -> Chart {
-        Chart {
-            title: format!("{}: section at {}", self.scene.title(), self.arguments.plane.text),
-            axes: told.axes.each_ref().map(Quantity::label),
+    let command = analysis.again().with("--plane", plane).with("--direction", direction);
+    let command = command.with("--axes", names.join(",")).with("--starts", arguments.starts);
+    let duration = analysis.scene.run().duration;
+    let mut lines = analysis.lines(duration, ", from each start");
+    let count: usize = crossed.iter().map(|start| start.points.len()).sum();
+    lines.push(("plane".to_owned(), format!("{plane}, {direction}")));
+    lines.extend([("starts", crossed.len()), ("crossings", count)].map(|(name, k)| (name.to_owned(), k.to_string())));
+    let close = crossed.iter().filter_map(|start| start.close).reduce(Close::and);
+    let failed = |one: &PlaneCrossing| Some(format!("start {}: {}", one.start, one.failure.as_ref()?));
+    analysis.tell(AnalysisResult {
+        columns: [&[Column::whole("start"), Column::new("t", "s")][..], &state, &shown].concat(),
+        rows: &|| crossed.iter().flat_map(|one| one.points.iter().map(move |point| row(one.start, point))).collect(),
+        chart: &|| Chart {
+            title: format!("{}: section at {plane}", analysis.scene.title()),
+            axes: axes.each_ref().map(Quantity::label),
             decades: [false; 2],
             layers: crossed.iter().map(|start| Layer::Dots(start.points.iter().map(|p| p.shown).collect())).collect(),
-        }
+        },
+        object: &|| {
+            let starts: Vec<Value> = crossed.iter().map(object).collect();
+            let more = json!({"plane": plane, "direction": direction, "axes": names, "starts": starts});
+            analysis.object(duration, more)
+        },
+        lines,
+        again: command.maybe_number("--energy", arguments.energy),
+        notes: json!({"plane": plane, "direction": direction, "axes": names, "starts": arguments.starts}),
+        warning: close.map(|close| format!("{}; a shorter --step samples more times", in_doubt(&close))),
+        failures: crossed.iter().filter_map(failed).collect(),
+        interrupted: (whole < starts).then(|| format!("{whole} of {starts} starts finished{begun}")),
+    })
+}
+
+/// The crossings of a start for a program.
+fn object(start: &PlaneCrossing) -> Value {
+    let points: Vec<Value> = start.points.iter().map(|p| json!([p.t, p.shown[0], p.shown[1]])).collect();
+    let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, doubts)});
+    if start.interrupted {
+        object["interrupted"] = json!(true);
     }
+    if let Some(failure) = &start.failure {
+        object["failure"] = json!(failure.to_string());
+        object["failed_at"] = json::failure(failure);
+    }
+    object
 }

@@ -5,16 +5,14 @@ mod formulas;
 mod run;
 
 use crate::args::StabilityArguments;
-use crate::compare::{methods, unless_interrupted};
-use crate::error::CliError;
-use crate::inspect::method_names;
+use crate::error::{CliError, unless_interrupted};
+use crate::inspect::{listed, methods};
 use crate::interrupt::Interrupt;
 use crate::{progress, table, terminal};
 use case::HardCase;
 use harness::stability::{Case, Outcome, Verdict};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The cases, in words.
 pub(crate) fn cases() -> Result<Vec<Case>, CliError> {
@@ -34,24 +32,19 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         None => cases.cases.iter().collect(),
         Some(name) => vec![named(name)?],
     };
-    let names: Vec<&str> = match &arguments.methods {
-        Some(names) => names.iter().map(|name| name.trim()).collect(),
-        None => method_names(),
-    };
-    let methods = methods(&names, None, None)?;
+    let methods = methods(&listed(arguments.methods.as_deref()), None, None)?;
     let pairs: Vec<_> = chosen
         .iter()
         .flat_map(|case| methods.iter().map(move |method| (*case, method)))
         .filter(|(case, method)| case.takes(method))
         .collect();
     let interrupt = Interrupt::listen_saying("stopping after the cases that have begun; Ctrl-C again ends at once");
-    let bar = progress::bar("cases", pairs.len() as u64);
-    let rows = in_parallel(&pairs, &interrupt, |(case, method)| {
-        let verdict = case.verdict(cases, method);
-        bar.inc(1);
-        Ok(CaseRow { case: case.case().name, method: method.info().name, verdict: verdict? })
-    })?;
-    bar.finish_and_clear();
+    let rows = progress::in_parallel("cases", pairs.len(), &interrupt, |i| {
+        let (case, method) = pairs[i];
+        let verdict = case.verdict(cases, method)?;
+        Ok(CaseRow { case: case.case().name, method: method.info().name, verdict })
+    });
+    let rows: Vec<CaseRow> = rows.into_iter().flatten().collect::<Result<_, CliError>>()?;
     if arguments.json {
         terminal::print_json(&json!({"cases": rows.iter().map(object).collect::<Vec<_>>()}))?;
     } else {
@@ -61,40 +54,6 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
     let failed = failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why));
     let made = (rows.len() < pairs.len()).then(|| format!("{} of {} rows finished", rows.len(), pairs.len()));
     unless_interrupted(made, None, CliError::of_failures(failed))
-}
-
-/// Each of the rows on whatever thread is free, in their order; after a signal those that have begun.
-fn in_parallel<T: Sync, R: Send>(
-    pairs: &[T],
-    interrupt: &Interrupt,
-    row: impl Fn(&T) -> Result<R, CliError> + Sync,
-) -> Result<Vec<R>, CliError> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(pairs.len().max(1));
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut made = Vec::new();
-        while !interrupt.asked()
-            && let Some((at, pair)) =
-                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, pairs.get(at)?)))
-        {
-            made.push((at, row(pair)));
-        }
-        made
-    };
-    let mut made = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
-        let own = work();
-        // A thread that panicked has said so; its rows are missing, and the count below tells.
-        others.into_iter().filter_map(|other| other.join().ok()).fold(own, |mut all, more| {
-            all.extend(more);
-            all
-        })
-    });
-    if made.len() < pairs.len() && !interrupt.asked() {
-        return Err(CliError::Computation(vec![format!("only {} of {} rows finished", made.len(), pairs.len())]));
-    }
-    made.sort_by_key(|(at, _)| *at);
-    made.into_iter().map(|(_, row)| row).collect()
 }
 
 fn named(name: &str) -> Result<&'static HardCase, CliError> {

@@ -17,14 +17,14 @@ pub(crate) fn add_json(object: &mut Value, record: &Record) {
     }
 }
 
-/// One line for a person; empty if the run could not divide steps.
-pub(crate) fn told(record: &Record) -> String {
-    let Some(SubstepSummary { divided, parts, most, .. }) = record.substeps else { return String::new() };
+/// A line for a person; `None` if the run could not divide steps.
+pub(crate) fn told(record: &Record) -> Option<(String, String)> {
+    let SubstepSummary { divided, parts, most, .. } = record.substeps?;
     let told = match divided {
         0 => format!("none of {} steps was divided", record.steps),
         _ => format!("{divided} of {} steps divided, into {parts} parts in all and {most} parts at most", record.steps),
     };
-    table::aligned(&[("substeps", told)])
+    Some(("substeps".to_owned(), told))
 }
 
 /// The failure of a run, with the outcome of its substeps or with the offer to make substeps.

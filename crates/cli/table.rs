@@ -1,27 +1,44 @@
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
 use lagrangian::Shown;
+use scene::AnyScene;
 use sleigh::SleighState;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The columns of a comparison.
-pub(crate) const COLUMNS: [&str; 14] = [
-    "method",
-    "order",
-    "step [s]",
-    "steps",
-    "constraint [m/s]",
-    "over steps [m/s]",
-    "energy error [J]",
-    "amplitude [J]",
-    "energy drift [W]",
-    "verdict",
-    "end error",
-    "Newton",
-    "ns/step",
-    "cost [s/s]",
+/// The cell of a run with the error at its end.
+type Cell = fn(&Record, Option<f64>) -> String;
+
+/// The columns of a comparison: headings and cells.
+const CELLS: [(&str, Cell); 14] = [
+    ("method", |record, _| record.method.name.to_owned()),
+    ("order", |record, _| record.method.order.to_string()),
+    ("step [s]", |record, _| number(record.step)),
+    ("steps", |record, _| record.steps.to_string()),
+    ("constraint [m/s]", |record, _| format!("{:.1e}", record.constraint_max)),
+    ("over steps [m/s]", |record, _| short(Some(record.step_constraint_max).filter(|most| !most.is_nan()))),
+    ("energy error [J]", |record, _| format!("{:.1e}", record.energy.max_error)),
+    ("amplitude [J]", |record, _| format!("{:.1e}", record.energy.drift.amplitude)),
+    ("energy drift [W]", |record, _| {
+        let interval = record.energy.drift.slope_ci.map_or_else(String::new, |interval| format!(" ± {interval:.0e}"));
+        format!("{:+.1e}{interval}", record.energy.drift.slope)
+    }),
+    ("verdict", |record, _| record.verdict().map_or_else(|| "-".to_owned(), |verdict| verdict.to_string())),
+    ("end error", |_, error| short(error)),
+    ("Newton", |Record { newton, .. }, _| if newton.max == 0 { "-".to_owned() } else { format!("{:.2}", newton.mean) }),
+    ("ns/step", |record, _| format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64)),
+    ("cost [s/s]", |record, _| short(record.seconds_per_simulated_second())),
 ];
+
+/// The headings of a comparison.
+pub(crate) fn headings() -> [&'static str; CELLS.len()] {
+    CELLS.map(|(heading, _)| heading)
+}
+
+/// A number in two digits; `-` if there is none.
+fn short(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1e}"))
+}
 
 /// The meaning of the columns.
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
@@ -65,30 +82,7 @@ pub(crate) fn cells(record: &Record, error: Option<f64>) -> Vec<String> {
     if let Some(failure) = &record.failure {
         return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("failed at {failure}")];
     }
-    let drift = &record.energy.drift;
-    let slope = || format!("{:+.1e}", drift.slope);
-    let newton = if record.newton.max == 0 { "-".to_owned() } else { format!("{:.2}", record.newton.mean) };
-    vec![
-        record.method.name.to_owned(),
-        record.method.order.to_string(),
-        number(record.step),
-        record.steps.to_string(),
-        format!("{:.1e}", record.constraint_max),
-        over_steps(record.step_constraint_max),
-        format!("{:.1e}", record.energy.max_error),
-        format!("{:.1e}", drift.amplitude),
-        drift.slope_ci.map_or_else(slope, |interval| format!("{} ± {interval:.0e}", slope())),
-        record.verdict().map_or_else(|| "-".to_owned(), |verdict| verdict.to_string()),
-        error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
-        newton,
-        format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64),
-        record.seconds_per_simulated_second().map_or_else(|| "-".to_owned(), |cost| format!("{cost:.1e}")),
-    ]
-}
-
-/// The constraint over steps; `-` if it was not measured.
-fn over_steps(most: f64) -> String {
-    if most.is_nan() { "-".to_owned() } else { format!("{most:.1e}") }
+    CELLS.iter().map(|(_, cell)| cell(record, error)).collect()
 }
 
 /// The methods that a method overtakes in a longer run; `None` if there are none.
@@ -100,18 +94,19 @@ pub(crate) fn better(record: &Record, better: &[(&str, f64)]) -> Option<String> 
 
 /// The table of a comparison, split into several tables if it is wider than `room` (characters).
 pub(crate) fn comparison(
-    (title, name, duration): (&str, &str, f64),
+    scene: &AnyScene,
     rows: &[ComparisonRow],
     interrupted: Option<&str>,
     room: Option<usize>,
 ) -> String {
     // A refusal or a failure needs more room than a column has: its text follows the row.
-    let short = |row: &ComparisonRow| row.cells.len() < COLUMNS.len();
+    let short = |row: &ComparisonRow| row.cells.len() < CELLS.len();
     let remark = |row: &ComparisonRow| row.cells.last().filter(|_| short(row)).cloned();
     let own = |row: &ComparisonRow| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
     let cells: Vec<_> = rows.iter().map(own).collect();
-    let mut text = format!("{title} ({name}), {} s\n", number(duration));
-    let parts = parts(&COLUMNS, &cells, room);
+    let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(scene.run().duration));
+    let headings = headings();
+    let parts = parts(&headings, &cells, room);
     for (k, columns) in parts.iter().enumerate() {
         // A short row has no numbers for the tables after the first.
         let rows: Vec<_> = rows.iter().zip(&cells).filter(|(row, _)| k == 0 || !short(row)).collect();
@@ -119,7 +114,7 @@ pub(crate) fn comparison(
         let pick = |cells: &Vec<String>| columns.iter().filter_map(|column| cells.get(*column).cloned()).collect();
         let (cells, header): (Vec<Vec<String>>, Vec<&str>) = (
             rows.iter().map(|(_, cells)| pick(cells)).collect(),
-            columns.iter().map(|column| COLUMNS[*column]).collect(),
+            columns.iter().map(|column| headings[*column]).collect(),
         );
         text += if k == 0 { "" } else { "\n" };
         for (line, remark) in right_aligned(&header, &cells).lines().zip(remarks) {
@@ -196,46 +191,38 @@ pub(crate) fn end_of_sleigh(end: &SleighState) -> Vec<(String, String)> {
     lines.map(|(name, value)| (name.to_owned(), value)).to_vec()
 }
 
-/// The result of one run of the scene `title`, `name`; `end` has the lines on the state at its end.
-pub(crate) fn one_run_of(
-    (title, name): (&str, &str),
+/// The lines of one run of a scene; `end` has the lines on the state at its end.
+pub(crate) fn one_run(
+    scene: &AnyScene,
     record: &Record,
-    end: &[(String, String)],
+    end: Vec<(String, String)>,
     out: Option<&Path>,
-) -> String {
-    let mut lines = vec![
-        ("scene", format!("{title} ({name})")),
+) -> Vec<(String, String)> {
+    /// A shorter time (s) to derive the equations is not shown.
+    const NOTICED: f64 = 0.1;
+    let (energy, newton, seconds) = (&record.energy, &record.newton, record.wall_seconds);
+    let per_step = seconds * 1e9 / record.steps.max(1) as f64;
+    let head = [
+        ("scene", format!("{} ({})", scene.title(), scene.name())),
         ("method", format!("{}, order {}", record.method.name, record.method.order)),
         ("steps", format!("{} of {} s, to t = {} s", record.steps, number(record.step), number(record.t))),
     ];
-    lines.extend(end.iter().map(|(name, value)| (name.as_str(), value.clone())));
-    lines.extend([
-        (
-            "energy",
-            format!("{} J at the start, {} J at the end", number(record.energy.initial), number(record.energy.last)),
-        ),
-        ("energy error", format!("{:.2e} J at most", record.energy.max_error)),
+    let mut rest = vec![
+        ("energy", format!("{} J at the start, {} J at the end", number(energy.initial), number(energy.last))),
+        ("energy error", format!("{:.2e} J at most", energy.max_error)),
         ("constraint", format!("{:.2e} m/s at most", record.constraint_max)),
-    ]);
-    if record.newton.max > 0 {
-        lines.push(("Newton", format!("{:.2} iterations a step, {} at most", record.newton.mean, record.newton.max)));
+    ];
+    if newton.max > 0 {
+        rest.push(("Newton", format!("{:.2} iterations a step, {} at most", newton.mean, newton.max)));
     }
-    let per_step = record.wall_seconds * 1e9 / record.steps.max(1) as f64;
-    lines.push(("time", format!("{:.3e} s, {per_step:.1} ns a step", record.wall_seconds)));
-    if let Some(path) = out {
-        lines.push(("written", path.display().to_string()));
+    rest.push(("time", format!("{seconds:.3e} s, {per_step:.1} ns a step")));
+    rest.extend(out.map(|path| ("written", path.display().to_string())));
+    if record.derivation_seconds >= NOTICED {
+        let seconds = record.derivation_seconds;
+        rest.push(("derivation", format!("{seconds:.2} s besides, of the equations of motion in a basis")));
     }
-    aligned(&lines)
-}
-
-/// The time to derive the equations; empty if it is too short to notice.
-pub(crate) fn derivation(record: &Record) -> String {
-    const NOTICED: f64 = 0.1;
-    let seconds = record.derivation_seconds;
-    if seconds < NOTICED {
-        return String::new();
-    }
-    aligned(&[("derivation", format!("{seconds:.2} s besides, of the equations of motion in a basis"))])
+    let named = |(name, value): (&str, String)| (name.to_owned(), value);
+    head.into_iter().map(named).chain(end).chain(rest.into_iter().map(named)).collect()
 }
 
 /// A number of things: `1 step`, `2 steps`.
@@ -252,16 +239,6 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
         let _ = writeln!(text, "{:<width$}  {}", name.as_ref(), value.as_ref());
     }
     text
-}
-
-/// Aligns lines from several calls of [`aligned`] in the same two columns.
-pub(crate) fn realigned(text: &str) -> String {
-    let lines: Vec<(&str, &str)> = text
-        .lines()
-        .map(|line| line.split_once("  ").unwrap_or((line, "")))
-        .map(|(a, b)| (a, b.trim_start()))
-        .collect();
-    aligned(&lines)
 }
 
 /// The error of a run that ended with a place, a velocity or an energy that is not a finite number; `None` if all are finite.

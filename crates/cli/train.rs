@@ -7,7 +7,7 @@ use harness::{Record, Sample};
 use serde_json::{Value, json};
 use sleigh::SleighState;
 
-/// The most trailers in a picture.
+/// The most trailers that a picture shows.
 const SHOWN: usize = 60;
 
 /// Places and headings along a run of the trailers that a picture shows, one trailer after the other.
@@ -51,12 +51,13 @@ pub(crate) fn add_json(object: &mut Value, train: &Train, record: &Record) {
 }
 
 /// The hinges and the last blade, for a person.
-pub(crate) fn told(train: &Train, record: &Record) -> String {
+pub(crate) fn told(train: &Train, record: &Record) -> [(String, String); 3] {
     let last = last(train, record);
     let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);
-    table::aligned(&[
+    let lines = [
         ("hinges", format!("{:.2e} m at most", record.leaf_max.unwrap_or(0.0))),
         ("trailers", train.trailers().len().to_string()),
         ("last blade", format!("x = {x} m, y = {y} m, heading {heading} rad")),
-    ])
+    ];
+    lines.map(|(name, value)| (name.to_owned(), value))
 }

@@ -4,7 +4,7 @@ use crate::table::number;
 use dla::{Close, Event};
 use harness::SavedCrossing;
 use scene::Built;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::str::FromStr;
 
 /// A quantity by its name, and a value that it is to cross.
@@ -38,33 +38,13 @@ impl FromStr for Trigger {
     }
 }
 
-/// The function of a trigger, zero at the crossing.
-#[derive(Debug, Clone, Copy)]
-struct TriggerFunction {
-    value: f64,
-    /// Whether values a turn apart are the same.
-    turns: bool,
-}
-
-impl TriggerFunction {
-    /// For an angle, the sine of half the distance from the value. It has one zero in a turn, while the sine of the whole distance has two;
-    /// its sign changes from turn to turn.
-    fn of(self, number: f64) -> f64 {
-        if self.turns { (0.5 * (number - self.value)).sin() } else { number - self.value }
-    }
-
-    /// Whether the quantity rises, given whether the function does.
-    fn rises(self, number: f64, function_rises: bool) -> bool {
-        if self.turns { function_rises == ((0.5 * (number - self.value)).cos() > 0.0) } else { function_rises }
-    }
-}
-
-/// A trigger with the quantity that it names in a system.
+/// A trigger with the quantity that it names in a system, and a function that is zero at the crossing.
 #[derive(Debug)]
 pub(crate) struct WatchedTrigger<'a> {
     trigger: &'a Trigger,
     quantity: Coordinate,
-    function: TriggerFunction,
+    /// Whether values a turn apart are the same.
+    turns: bool,
 }
 
 impl Trigger {
@@ -89,7 +69,7 @@ impl Trigger {
                 self.value,
             )));
         };
-        Ok(WatchedTrigger { trigger: self, quantity, function: TriggerFunction { value: self.value, turns } })
+        Ok(WatchedTrigger { trigger: self, quantity, turns })
     }
 }
 
@@ -99,67 +79,55 @@ impl WatchedTrigger<'_> {
         &self.trigger.text
     }
 
+    /// The distance from the value; of an angle, the sine of half of it, which has one zero in a turn (the sine of the whole distance has
+    /// two), and whose sign changes from turn to turn.
+    fn value(&self, system: &Built<'_>, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        let off = self.quantity.value(system, t, q, v) - self.trigger.value;
+        if self.turns { (0.5 * off).sin() } else { off }
+    }
+
+    /// Whether the quantity rises, given whether the function does.
+    fn rises(&self, system: &Built<'_>, t: f64, (q, v): (&[f64], &[f64]), function_rises: bool) -> bool {
+        let off = || self.quantity.value(system, t, q, v) - self.trigger.value;
+        if self.turns { function_rises == ((0.5 * off()).cos() > 0.0) } else { function_rises }
+    }
+
     /// The event in a system.
     pub(crate) fn event<'a>(&'a self, system: &'a Built<'a>) -> Event<'a> {
-        let of = move |t, q: &[f64], v: &[f64]| self.function.of(self.quantity.value(system, t, q, v));
-        let event = Event::new(self.trigger.text.clone(), of);
+        let event = Event::new(self.trigger.text.clone(), |t, q: &[f64], v: &[f64]| self.value(system, t, q, v));
         let Some(wanted) = self.trigger.rising else { return event };
-        event.where_true(move |t, q, v, rising| {
-            self.function.rises(self.quantity.value(system, t, q, v), rising) == wanted
-        })
-    }
-}
-
-/// An event that happened, for any number of coordinates.
-pub(crate) struct Happened<'a> {
-    name: &'a str,
-    t: f64,
-    within: f64,
-    spacing: f64,
-    rising: bool,
-    state: Map<String, Value>,
-}
-
-impl<'a> Happened<'a> {
-    /// In a system.
-    pub(crate) fn of(system: &Built<'_>, watched: &[WatchedTrigger<'a>], crossing: &SavedCrossing) -> Option<Self> {
-        let SavedCrossing { event, t, within, spacing, rising, q, v, .. } = crossing;
-        let WatchedTrigger { trigger, quantity, function } = watched.get(*event)?;
-        let [t, within, spacing] = [*t, *within, *spacing];
-        let rising = function.rises(quantity.value(system, t, q, v), *rising);
-        let state = system.state(t, q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
-        Some(Self { name: &trigger.text, t, within, spacing, rising, state })
-    }
-
-    /// In the words of a scene, for `run --json`.
-    pub(crate) fn json(self) -> Value {
-        let Self { name, t, within, spacing, rising, state } = self;
-        let mut object = json!({"event": name, "t": t, "within": within, "spacing": spacing, "rising": rising});
-        if let Value::Object(fields) = &mut object {
-            fields.extend(state);
-        }
-        object
-    }
-
-    /// For a person.
-    pub(crate) fn told(&self) -> String {
-        let how = if self.rising { "rising" } else { "falling" };
-        format!("event      {}, {how}, at t = {} s\n", self.name, number(self.t))
+        event.where_true(move |t, q, v, rising| self.rises(system, t, (q, v), rising) == wanted)
     }
 }
 
 /// The events of a run, for a program and for a person.
 pub(crate) struct Events {
     values: Vec<Value>,
-    pub(crate) told: String,
+    pub(crate) told: Vec<(String, String)>,
     close: Option<Close>,
 }
 
 impl Events {
-    pub(crate) fn new<'a>(happened: impl Iterator<Item = Happened<'a>>, close: Option<Close>) -> Self {
-        let told_and_value = |event: Happened<'a>| (event.told(), event.json());
-        let (told, values): (Vec<String>, Vec<Value>) = happened.map(told_and_value).unzip();
-        Self { values, told: told.concat(), close }
+    /// The crossings of a run of a system, in the words of its scene.
+    pub(crate) fn of(
+        system: &Built<'_>,
+        watched: &[WatchedTrigger<'_>],
+        crossings: &[SavedCrossing],
+        close: Option<Close>,
+    ) -> Self {
+        let (mut values, mut told) = (Vec::new(), Vec::new());
+        for SavedCrossing { event, t, within, spacing, rising, q, v, .. } in crossings {
+            let Some(watched) = watched.get(*event) else { continue };
+            let (text, rising) = (watched.text(), watched.rises(system, *t, (q, v), *rising));
+            let how = if rising { "rising" } else { "falling" };
+            told.push(("event".to_owned(), format!("{text}, {how}, at t = {} s", number(*t))));
+            let mut value = json!({"event": text, "t": t, "within": within, "spacing": spacing, "rising": rising});
+            for (quantity, number) in system.state(*t, q, v) {
+                value[quantity.name] = json!(number);
+            }
+            values.push(value);
+        }
+        Self { values, told, close }
     }
 
     /// Adds the events to the object of `run --json`.

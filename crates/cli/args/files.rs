@@ -1,8 +1,9 @@
-//! Files of runs: `noslip plot` and `diff`.
+//! Arguments of commands on files: `noslip plot`, `diff`, `ensemble`, `merge`, `check`, `equations`, `list` and `new`.
 
 use super::scene::Settings;
 use super::values::{Size, dpi, not_negative, number, scene_path};
-use clap::Args;
+use crate::ensemble::Share;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -56,4 +57,100 @@ pub(crate) struct DiffArguments {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EnsembleArguments {
+    /// A sweep file, which names a scene and the keys that vary
+    #[arg(value_name = "SWEEP", value_parser = scene_path())]
+    pub(crate) sweep: String,
+    /// Write a row for each member to a file .csv, .jsonl, .npz or .parquet (a cargo feature), by the ending of the
+    /// name; with --part, FILE is the folder of the parts
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Continue an interrupted run of the same sweep
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
+    /// Compute part I of N equal parts (I from 1 to N) into the folder --out; `noslip merge` joins the parts. A part
+    /// that exists is kept, and an interrupted part is continued
+    #[arg(long, value_name = "I/N", requires = "out")]
+    pub(crate) part: Option<Share>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Overwrite output files that exist already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// The folder of the parts
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// The file to write: .csv, .jsonl, .npz or .parquet (a cargo feature), by the ending of the name [default:
+    /// DIR.csv]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite output files that exist already
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// Scene files, names of bundled scenes, or - for the standard input
+    #[arg(value_name = "SCENE", value_parser = scene_path(), required = true)]
+    pub(crate) scenes: Vec<String>,
+    #[command(flatten)]
+    pub(crate) set: Settings,
+    /// Print one JSON array, an object for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EquationsArguments {
+    /// A scene file, the name of a bundled scene, or - for the standard input
+    #[arg(value_name = "SCENE", value_parser = scene_path())]
+    pub(crate) scene: String,
+    #[command(flatten)]
+    pub(crate) set: Settings,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ListArguments {
+    /// What to list
+    pub(crate) what: Listed,
+    /// Print one JSON array
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Listed {
+    /// The integrators
+    Methods,
+    /// The effects that can act on a body
+    Effects,
+    /// The bundled scenes
+    Scenes,
+    /// The hard cases of `noslip stability`
+    Cases,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewArguments {
+    /// The file to write; - is standard output
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Overwrite a file that exists already
+    #[arg(long)]
+    pub(crate) force: bool,
 }

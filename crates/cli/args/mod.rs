@@ -1,21 +1,21 @@
 //! The command line, as its help shows it.
 
 mod analysis;
-mod comparison;
 mod files;
-mod inspect;
 mod run;
 mod scene;
-mod sweep;
 mod values;
 
 pub(crate) use self::scene::{SceneArguments, Settings};
-pub(crate) use analysis::{EquilibriaArguments, LyapunovArguments, PhaseArguments, SectionArguments};
-pub(crate) use comparison::{CompareArguments, PrecisionArguments, StabilityArguments};
-pub(crate) use files::{DiffArguments, PlotArguments};
-pub(crate) use inspect::{CheckArguments, EquationsArguments, ListArguments, Listed, NewArguments};
+pub(crate) use analysis::{
+    CompareArguments, EquilibriaArguments, LyapunovArguments, PhaseArguments, PrecisionArguments, SectionArguments,
+    StabilityArguments,
+};
+pub(crate) use files::{
+    CheckArguments, DiffArguments, EnsembleArguments, EquationsArguments, ListArguments, Listed, MergeArguments,
+    NewArguments, PlotArguments,
+};
 pub(crate) use run::RunArguments;
-pub(crate) use sweep::{EnsembleArguments, MergeArguments};
 pub(crate) use values::Size;
 
 use clap::{Args, Parser, Subcommand};

@@ -2,7 +2,7 @@
 
 use super::values::{number, scene_path};
 use clap::Args;
-use scene::Setting;
+use scene::{Overrides, Setting};
 
 /// Settings that override values of the scene.
 #[derive(Debug, Default, Args)]
@@ -34,4 +34,11 @@ pub(crate) struct SceneArguments {
     /// Overwrite output files that exist already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+impl SceneArguments {
+    /// The run settings of the flags, with a method and a duration (s).
+    pub(crate) fn run<'a>(&self, method: Option<&'a str>, duration: Option<f64>) -> Overrides<'a> {
+        Overrides { method, step: self.step, duration, alpha: self.alpha }
+    }
 }

@@ -7,7 +7,7 @@ use crate::error::CliError;
 use crate::files::{read_text, write_whole};
 use crate::format::Format;
 use crate::program;
-use crate::provenance::{DescribedColumn, Provenance};
+use crate::provenance::{Provenance, described, headed};
 use scene::{Column, Sweep};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -90,8 +90,9 @@ impl About {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let command = CommandLine::of("ensemble", &self.sweep, &Settings::default()).with("--out", out.display());
         let provenance = Provenance::new(&self.title, Some(&command), self.notes.clone());
-        let last = if format.is_text() { DescribedColumn::headed("error", "string") } else { (&failed()).into() };
-        provenance.document(&name, self.columns().iter().map(DescribedColumn::from).chain([last]))
+        let mut columns = described(&self.columns());
+        columns.extend(if format.is_text() { vec![headed("error", "string")] } else { described(&[failed()]) });
+        provenance.document(&name, &columns)
     }
 
     /// Reads it from a file beside parts; `None` if the file is another one, or damaged.

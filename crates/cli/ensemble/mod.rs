@@ -1,38 +1,32 @@
 //! `noslip ensemble`: many variants of a scene.
 
 mod about;
-mod lines;
 mod members;
-mod merge;
 mod parts;
-mod plan;
 mod result;
 mod rows;
-pub(crate) mod share;
 mod spool;
 mod totals;
 
-pub(crate) use merge::merge;
-pub use plan::{SweepPlan, plan};
+pub(crate) use parts::{Share, merge};
+pub use parts::{SweepPlan, plan};
 
 use crate::args::EnsembleArguments;
-use crate::error::CliError;
+use crate::error::{CliError, unless_interrupted};
 use crate::file_roles::FileRoles;
 use crate::files::check_file;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
-use crate::part::PartFile;
-use crate::provenance::metadata_of;
-use crate::{compare, inspect, program, progress, terminal};
+use crate::lock::PartFile;
+use crate::{inspect, program, progress, terminal};
 use about::About;
 use dla::Checkpoint;
 use harness::ensemble::in_order;
-use indicatif::ProgressBar;
 use members::{MemberRow, Members, Summed, method_of};
 use result::Shape;
 use scene::Sweep;
 use spool::{Spool, SpoolRequest};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 use totals::EnsembleTotals;
 
@@ -52,31 +46,22 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
             let format = Format::of(path, None)?;
             FileRoles::of(&arguments.sweep).rows("--out", Some(path)).check()?;
             check_file(path, arguments.force || arguments.resume && PartFile::path_of(path).exists())?;
-            if format.is_text() {
-                check_file(&metadata_of(path), arguments.force || arguments.resume)?;
-            }
+            format.check_metadata(path, arguments.force || arguments.resume)?;
             Some((path.as_path(), format))
         }
         None => None,
     };
-    let interrupt = Interrupt::listen_saying("stopping after the members that have begun; Ctrl-C again ends at once");
+    let (interrupt, all) = (listen(), 0..sweep.count());
     let mut totals = EnsembleTotals::new(&about, 0);
     let mut spool = match out {
         Some((path, _)) => {
-            let of = (identity.as_str(), 0..sweep.count(), about.columns().len());
+            let of = (identity.as_str(), all.clone(), about.columns().len());
             let asked = SpoolRequest { resume: arguments.resume, force: arguments.force };
-            Some(Spool::open(path, of, asked, |values, error| totals.add(values, error))?)
+            Some(Spool::open(path, of, asked, |text| totals.take(text))?)
         }
         None => None,
     };
-    let done = spool.as_ref().map_or(0, Spool::next);
-    let bar = progress::bar(members.method.info().name, sweep.count());
-    bar.inc(done);
-    let begin = Instant::now();
-    let outcome = compute(&members, sweep.count(), &mut spool, &mut totals, &interrupt, &bar);
-    bar.finish_and_clear();
-    let seconds = begin.elapsed().as_secs_f64();
-    outcome?;
+    let (seconds, computed) = compute(&members, (all, ""), &mut spool, &mut totals, &interrupt)?;
     let stopped = totals.count() < sweep.count();
     let written = match (spool, out) {
         (Some(spool), Some((path, format))) if !stopped => {
@@ -86,7 +71,6 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
         }
         _ => Ok(()),
     };
-    let computed = totals.count() - done;
     if arguments.json {
         terminal::print_json(&totals.json(&about, seconds, computed))?;
     } else {
@@ -98,21 +82,23 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
         let on = if out.is_some() { "; the same command with --resume continues" } else { "" };
         format!("{} of {} members finished{on}", totals.count(), sweep.count())
     });
-    compare::unless_interrupted(made, None, failed)
+    unless_interrupted(made, None, failed)
 }
 
-/// Computes the members up to `end` that are not there yet, as far as a signal lets it come; each row is in the spool, and in the totals, as soon
-/// as it and those before it are done.
+/// Computes the members `all` that are not in the spool yet, as far as a signal lets it come, and returns the time (s) and the number of members.
+/// Each row is in the spool, and in the totals, as soon as it and those before it are done.
 fn compute(
     members: &Members<'_>,
-    end: u64,
+    (all, of): (Range<u64>, &str),
     spool: &mut Option<Spool>,
     totals: &mut EnsembleTotals,
     interrupt: &Interrupt,
-    bar: &ProgressBar,
-) -> Result<(), CliError> {
+) -> Result<(f64, u64), CliError> {
     let lines = spool.as_ref().map(Spool::lines).cloned();
-    let todo = spool.as_ref().map_or(0, Spool::next)..end;
+    let todo = spool.as_ref().map_or(all.start, Spool::next)..all.end;
+    let (begin, done) = (Instant::now(), totals.count());
+    let bar = progress::bar(&format!("{}{of}", members.method.info().name), all.end - all.start);
+    bar.inc(done);
     let each = |member| {
         let row = members.row(member);
         let text = lines.as_ref().map(|lines| lines.line(&row)).unwrap_or_default();
@@ -127,10 +113,17 @@ fn compute(
             Err(error) => ControlFlow::Break(error),
         }
     };
-    match in_order(todo, || interrupt.asked(), each, sink) {
+    let outcome = in_order(todo, || interrupt.asked(), each, sink);
+    bar.finish_and_clear();
+    match outcome {
         ControlFlow::Break(error) => Err(error),
-        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Continue(()) => Ok((begin.elapsed().as_secs_f64(), totals.count() - done)),
     }
+}
+
+/// The signals to a sweep.
+fn listen() -> Interrupt {
+    Interrupt::listen_saying("stopping after the members that have begun; Ctrl-C again ends at once")
 }
 
 /// Identifies a sweep, by all that its rows depend on.

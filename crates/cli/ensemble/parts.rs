@@ -1,53 +1,56 @@
 //! Parts of a sweep that are computed by processes of their own: files of rows in a folder, and one on the sweep.
 
 use super::about::About;
-use super::compute;
-use super::lines::Lines;
-use super::members::Members;
-use super::rows::{Source, SpoolRows};
-use super::share::Share;
+use super::members::{Members, method_of};
+use super::result::Shape;
+use super::rows::{Lines, Source, SpoolRows};
 use super::spool::{Spool, SpoolRequest};
 use super::totals::EnsembleTotals;
-use crate::args::EnsembleArguments;
-use crate::error::CliError;
-use crate::interrupt::Interrupt;
-use crate::{compare, progress, terminal};
+use super::{compute, identity, listen};
+use crate::args::{EnsembleArguments, MergeArguments};
+use crate::error::{CliError, unless_interrupted};
+use crate::files::check_file;
+use crate::format::Format;
+use crate::in_memory::Refusal;
+use crate::{inspect, terminal};
 use dla::Checkpoint;
-use std::collections::BTreeSet;
+use scene::Sweep;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Error;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::str::FromStr;
 
 /// The advice for a part that is not as it was written.
 const ADVICE: &str = "`noslip ensemble SWEEP --out DIR --part I/N` computes the part again";
 
 /// A file of rows of some members.
 #[derive(Debug, Clone)]
-pub(super) struct SweepPart {
-    pub(super) path: PathBuf,
-    pub(super) members: Range<u64>,
+struct SweepPart {
+    path: PathBuf,
+    members: Range<u64>,
 }
 
 /// The beginning of the names of the files of a sweep: a hash of all that its rows depend on.
-pub(super) fn stem(identity: &str) -> String {
+fn stem(identity: &str) -> String {
     format!("{}-{}", Checkpoint::fingerprint(identity), env!("CARGO_PKG_VERSION"))
 }
 
 /// The name of the file of some members.
-pub(super) fn name(stem: &str, members: &Range<u64>) -> String {
+fn name(stem: &str, members: &Range<u64>) -> String {
     format!("{stem}-{}-{}.rows", members.start, members.end)
 }
 
 /// The members in such a name.
-pub(super) fn members_of(stem: &str, name: &str) -> Option<Range<u64>> {
+fn members_of(stem: &str, name: &str) -> Option<Range<u64>> {
     let (start, end) = name.strip_prefix(stem)?.strip_prefix('-')?.strip_suffix(".rows")?.split_once('-')?;
     Some(start.parse().ok()?..end.parse().ok()?)
 }
 
 /// A reader of the rows of parts that follow on each other.
-pub(super) fn rows<'a>(of: (&'a Lines, &'a str), parts: &[SweepPart]) -> SpoolRows<'a> {
+fn rows_of<'a>(lines: &'a Lines, parts: &[SweepPart]) -> SpoolRows<'a> {
     let members = parts.first().map_or(0, |part| part.members.start)..parts.last().map_or(0, |part| part.members.end);
-    SpoolRows::new(of, parts.iter().map(|part| Source::At(part.path.clone())).collect(), members, ADVICE)
+    SpoolRows::new(lines, parts.iter().map(|part| Source::At(part.path.clone())).collect(), members, ADVICE)
 }
 
 /// Computes a part of a sweep, unless it is there already; an interrupted one goes on.
@@ -65,41 +68,31 @@ pub(super) fn make(
     about.write(&folder.join(format!("{stem}.json")))?;
     let range = share.members(about.members);
     let path = folder.join(name(&stem, &range));
-    let (numbers, header) = (about.columns().len(), format!("{}\n", about.identity));
+    let numbers = about.columns().len();
     let part = SweepPart { path: path.clone(), members: range.clone() };
     let mut totals = EnsembleTotals::new(about, range.start);
     let mut seconds = 0.0;
     let mut computed = 0;
     let there = !arguments.force && path.exists();
-    if there && is_whole(&part, (&Lines::new(&about.identity, numbers), &header), &mut totals) {
+    if there && is_whole(&part, &Lines::new(&about.identity, numbers), &mut totals) {
         terminal::say("note", &format!("{}: the part exists already and is kept", path.display()));
     } else {
         if there {
             terminal::say("warning", &format!("{}: the part is damaged and is computed again", path.display()));
         }
         totals = EnsembleTotals::new(about, range.start);
-        let note = "stopping after the members that have begun; Ctrl-C again ends at once";
-        let interrupt = Interrupt::listen_saying(note);
+        let interrupt = listen();
         // The same command goes on, as a batch system gives it again.
         let asked = SpoolRequest { resume: !arguments.force, force: true };
         let of = (about.identity.as_str(), range.clone(), numbers);
-        let spool = Spool::open(&path, of, asked, |values, error| totals.add(values, error))?;
-        let done = spool.next() - range.start;
-        let bar = progress::bar(&format!("{} {share}", members.method.info().name), range.end - range.start);
-        bar.inc(done);
-        let (begin, mut spool) = (Instant::now(), Some(spool));
-        let outcome = compute(members, range.end, &mut spool, &mut totals, &interrupt, &bar);
-        bar.finish_and_clear();
-        outcome?;
-        (seconds, computed) = (begin.elapsed().as_secs_f64(), totals.count() - done);
+        let mut spool = Some(Spool::open(&path, of, asked, |text| totals.take(text))?);
+        let of = (range.clone(), &*format!(" {share}"));
+        (seconds, computed) = compute(members, of, &mut spool, &mut totals, &interrupt)?;
         let whole = range.end - range.start;
         if totals.count() < whole {
-            let made = format!(
-                "{} of {whole} members of the part finished; the same command \
-                continues",
-                totals.count()
-            );
-            return compare::unless_interrupted(Some(made), None, Ok(()));
+            let count = totals.count();
+            let made = format!("{count} of {whole} members of the part finished; the same command continues");
+            return unless_interrupted(Some(made), None, Ok(()));
         }
         if let Some(spool) = spool {
             spool.becomes_part(&path, range.end)?;
@@ -116,8 +109,8 @@ pub(super) fn make(
 }
 
 /// Whether a part has every row; its members are added to the totals.
-fn is_whole(part: &SweepPart, of: (&Lines, &str), totals: &mut EnsembleTotals) -> bool {
-    let mut rows = rows(of, std::slice::from_ref(part));
+fn is_whole(part: &SweepPart, lines: &Lines, totals: &mut EnsembleTotals) -> bool {
+    let mut rows = rows_of(lines, std::slice::from_ref(part));
     loop {
         match rows.next() {
             Ok(Some(text)) => totals.take(text),
@@ -131,10 +124,10 @@ fn is_whole(part: &SweepPart, of: (&Lines, &str), totals: &mut EnsembleTotals) -
 ///
 /// # Errors
 /// The members that are missing.
-pub(super) fn chain(mut parts: Vec<SweepPart>, members: u64) -> Result<Vec<SweepPart>, Range<u64>> {
+fn chain(mut parts: Vec<SweepPart>, members: u64) -> Result<Vec<SweepPart>, Range<u64>> {
     // From the end: a part is of use if another one goes on from its end.
     parts.sort_by_key(|part| (std::cmp::Reverse(part.members.start), part.members.end));
-    let mut onward: std::collections::BTreeMap<u64, SweepPart> = std::collections::BTreeMap::new();
+    let mut onward: BTreeMap<u64, SweepPart> = BTreeMap::new();
     for part in &parts {
         let Range { start, end } = part.members;
         if start < end && (end == members || onward.contains_key(&end)) {
@@ -177,7 +170,7 @@ fn stem_of(name: &str) -> Option<&str> {
 }
 
 /// The sweep of the parts in a folder, and the parts.
-pub(super) fn found(folder: &Path) -> Result<(About, Vec<SweepPart>), CliError> {
+fn found(folder: &Path) -> Result<(About, Vec<SweepPart>), CliError> {
     let unreadable = |source| CliError::Read { path: folder.to_owned(), source };
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -227,4 +220,105 @@ fn told_apart(sweeps: &[About]) -> String {
          of them",
         differ.join(" and ")
     )
+}
+
+/// `noslip merge`: the result of a sweep of its parts, with the bytes that one process would have written.
+pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
+    let MergeArguments { folder, out, force, json } = arguments;
+    let (about, all) = found(folder)?;
+    let out: PathBuf = out.clone().unwrap_or_else(|| folder.with_extension("csv"));
+    let format = Format::of(&out, None)?;
+    check_file(&out, *force)?;
+    format.check_metadata(&out, *force)?;
+    let parts = chain(all, about.members).map_err(|missing| {
+        let (first, last) = (missing.start, missing.end.saturating_sub(1));
+        CliError::Request(format!(
+            "{}: no part continues the others with members {first} to {last} of {}; compute the missing parts, then merge",
+            folder.display(),
+            about.members
+        ))
+    })?;
+    let columns = about.columns();
+    let lines = Lines::new(&about.identity, columns.len());
+    let rows = || -> Result<_, Error> { Ok(rows_of(&lines, &parts)) };
+    let unreadable = |source| CliError::Read { path: folder.clone(), source };
+    let mut totals = EnsembleTotals::new(&about, 0);
+    let mut all = rows().map_err(unreadable)?;
+    while let Some(text) = all.next().map_err(unreadable)? {
+        totals.take(text);
+    }
+    let metadata = about.metadata(&out, format);
+    let shape = Shape { format, columns: &columns, count: about.members, metadata: &metadata };
+    shape.write(&out, *force, &rows)?;
+    match json {
+        true => terminal::print_json(&totals.json(&about, 0.0, 0))?,
+        false => terminal::print(&totals.text(&about, 0.0, 0, Some(&out)))?,
+    }
+    CliError::of_failures(totals.failures())
+}
+
+/// The parts that a sweep is computed in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SweepPlan {
+    /// The beginning of the names of its files: a hash of all that its rows depend on, and the version of the program.
+    pub stem: String,
+    /// How many members there are.
+    pub members: u64,
+    /// The names of the files of the parts, in order.
+    pub parts: Vec<String>,
+}
+
+/// Splits the sweep in the file `sweep` into `parts` parts, or one part per member if there are fewer members.
+///
+/// # Errors
+/// [`Refusal`] with the first error of the sweep, or if `parts` is zero.
+pub fn plan(sweep: &str, parts: u64) -> Result<SweepPlan, Refusal> {
+    Ok(made(sweep, parts)?)
+}
+
+fn made(sweep: &str, parts: u64) -> Result<SweepPlan, CliError> {
+    if parts == 0 {
+        return Err(CliError::Request("0 parts: accepted are whole numbers from 1".to_owned()));
+    }
+    let names = inspect::method_names();
+    let sweep = Sweep::load(sweep, &names)?;
+    method_of(&sweep, sweep.scene.run())?;
+    let (stem, members) = (stem(&identity(&sweep)), sweep.count());
+    let of = parts.min(members);
+    let part = |number| name(&stem, &Share { number, of }.members(members));
+    Ok(SweepPlan { parts: (1..=of).map(part).collect(), stem, members })
+}
+
+/// One of some equal parts of the members of a sweep, such as `3/64`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Share {
+    number: u64,
+    of: u64,
+}
+
+impl Share {
+    /// The members of this part, in a sweep of `count` members.
+    fn members(self, count: u64) -> Range<u64> {
+        let until = |part: u64| (u128::from(count) * u128::from(part) / u128::from(self.of)) as u64;
+        until(self.number - 1)..until(self.number)
+    }
+}
+
+impl std::fmt::Display for Share {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+impl FromStr for Share {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers =
+            text.split_once('/').and_then(|(number, of)| Some((number.trim().parse().ok()?, of.trim().parse().ok()?)));
+        match numbers {
+            Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
+            _ => Err("accepted is I/N, for example 3/64: part I of N parts, with I from 1 to N".to_owned()),
+        }
+    }
 }

@@ -1,10 +1,7 @@
-use super::lines;
-use super::rows::SpoolRows;
-use crate::csv_text;
+use super::rows::{SpoolRows, numbers_of, parsed};
 use crate::error::CliError;
 use crate::files::{as_written, write_whole};
-use crate::format::Format;
-use crate::output::in_arrays;
+use crate::format::{Format, csv_header};
 use crate::provenance::{label, metadata_of};
 use scene::Column;
 use std::io::{Error, Seek, Write};
@@ -50,54 +47,37 @@ fn content<'a>(
     rows: &impl Fn() -> Result<SpoolRows<'a>, Error>,
 ) -> Result<(), Error> {
     let Shape { format, columns, count, metadata } = *shape;
+    let mut rows = rows()?;
     match format {
         Format::Csv => {
-            writeln!(file, "{},error", csv_text::header(columns.iter().map(label)))?;
-            let mut rows = rows()?;
+            writeln!(file, "{},error", csv_header(columns.iter().map(label)))?;
             while let Some(row) = rows.next()? {
                 writeln!(file, "{row}")?;
             }
             Ok(())
         }
         Format::Jsonl => {
-            let mut rows = rows()?;
             while let Some(row) = rows.next()? {
                 writeln!(file, "{}", object(columns, row))?;
             }
             Ok(())
         }
-        Format::Npz => {
-            let columns = with_failed(columns);
-            arrays::write(file, &in_arrays(&columns), count, metadata, |push| {
-                let mut rows = rows()?;
-                while let Some(row) = rows.next()? {
-                    push(&lines::numbers_of(row))?;
-                }
-                Ok(())
-            })
-        }
-        #[cfg(feature = "parquet")]
-        Format::Parquet => {
-            let (mut rows, columns) = (rows()?, with_failed(columns));
-            let next = || rows.next().map(|text| text.map(lines::numbers_of)).transpose();
-            crate::parquet_file::write(file, &columns, metadata, std::iter::from_fn(next))
+        _ => {
+            let columns = [columns, &[failed()]].concat();
+            let numbers = || rows.next().map(|text| text.map(numbers_of)).transpose();
+            format.write_numbers(file, &columns, (count, metadata), std::iter::from_fn(numbers))
         }
     }
 }
 
-/// The columns of a numeric file: the last one is 1 if the member failed, else 0.
-fn with_failed(columns: &[Column]) -> Vec<Column> {
-    columns.iter().cloned().chain([failed()]).collect()
-}
-
-/// Whether a member failed: 1, or 0.
+/// The last column of a file of numbers: whether a member failed, 1 or 0.
 pub(super) fn failed() -> Column {
     Column::whole("failed")
 }
 
 /// A row as a JSON object. The member is a whole number; a value that is not finite is null.
 fn object(columns: &[Column], row: &str) -> serde_json::Value {
-    let (values, error) = lines::parsed(row);
+    let (values, error) = parsed(row);
     let member: Option<u64> = row.split(',').next().and_then(|number| number.parse().ok());
     let mut object = serde_json::json!({ "member": member });
     for (column, value) in columns.iter().skip(1).zip(values) {

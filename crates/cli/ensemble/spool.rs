@@ -1,9 +1,8 @@
-use super::lines::{Damage, Lines, parsed};
 use super::result::Shape;
-use super::rows::{Source, SpoolRows};
+use super::rows::{Damage, Lines, Source, SpoolRows};
 use crate::error::CliError;
 use crate::files::check_file;
-use crate::part::PartFile;
+use crate::lock::PartFile;
 use crate::terminal;
 use std::io::{BufRead, BufReader, Error, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -18,8 +17,6 @@ pub(super) struct Spool {
     first: u64,
     /// The first member whose row is still missing.
     next: u64,
-    /// The first line of the file.
-    header: String,
 }
 
 /// How to treat the rows of an interrupted run.
@@ -32,13 +29,13 @@ pub(super) struct SpoolRequest {
 }
 
 impl Spool {
-    /// Opens the spool for `members` of the sweep `identity`, whose rows have `numbers` numbers. `seen` receives the values and the error
-    /// of every row taken over.
+    /// Opens the spool for `members` of the sweep `identity`, whose rows have `numbers` numbers. `seen` receives every row that is taken
+    /// over.
     pub(super) fn open(
         out: &Path,
         (identity, members, numbers): (&str, Range<u64>, usize),
         asked: SpoolRequest,
-        seen: impl FnMut(&[f64], Option<&str>),
+        seen: impl FnMut(&str),
     ) -> Result<Self, CliError> {
         let part = PartFile::lock(out)?;
         let found = part.len()?;
@@ -49,9 +46,9 @@ impl Spool {
             }
             return Err(error);
         }
-        let (lines, header) = (Lines::new(identity, numbers), format!("{identity}\n"));
-        let mut spool = Self { part, lines, first: members.start, next: members.start, header };
-        let begun = found >= spool.header.len() as u64 || !spool.has_begun_only(found)?;
+        let lines = Lines::new(identity, numbers);
+        let mut spool = Self { part, lines, first: members.start, next: members.start };
+        let begun = found >= spool.lines.header.len() as u64 || !spool.has_begun_only(found)?;
         if begun && asked.resume {
             spool.take_over(members.end, seen)?;
             if spool.next < members.end {
@@ -83,14 +80,14 @@ impl Spool {
         let mut text = Vec::new();
         let mut reader = self.reader().map_err(|source| self.part.failed(source))?;
         reader.read_until(b'\n', &mut text).map_err(|source| self.part.failed(source))?;
-        Ok(text.len() as u64 == size && self.header.as_bytes().starts_with(&text))
+        Ok(text.len() as u64 == size && self.lines.header.as_bytes().starts_with(&text))
     }
 
     fn begin(&mut self) -> Result<(), Error> {
         let mut file = self.part.file();
         file.set_len(0)?;
         file.seek(SeekFrom::Start(0))?;
-        file.write_all(self.header.as_bytes())
+        file.write_all(self.lines.header.as_bytes())
     }
 
     fn reader(&self) -> Result<BufReader<&std::fs::File>, Error> {
@@ -100,12 +97,12 @@ impl Spool {
     }
 
     /// Keeps the leading rows that are whole and in order; all later rows are computed again.
-    fn take_over(&mut self, members: u64, mut seen: impl FnMut(&[f64], Option<&str>)) -> Result<(), CliError> {
+    fn take_over(&mut self, members: u64, mut seen: impl FnMut(&str)) -> Result<(), CliError> {
         let unreadable = |source| CliError::Read { path: self.part.path().to_owned(), source };
         let (mut reader, mut line) = (self.reader().map_err(unreadable)?, Vec::new());
         reader.read_until(b'\n', &mut line).map_err(unreadable)?;
-        if line != self.header.as_bytes() {
-            let (found, own) = (String::from_utf8_lossy(&line[..line.len().min(200)]), self.header.trim_end());
+        if line != self.lines.header.as_bytes() {
+            let (found, own) = (String::from_utf8_lossy(&line[..line.len().min(200)]), self.lines.header.trim_end());
             return Err(CliError::Request(format!(
                 "{}:1: the file belongs to another sweep or to another version of the program, or is damaged: it begins with `{}`, and the rows \
                     of this sweep begin with `{own}`; without --resume, --force begins anew",
@@ -119,13 +116,10 @@ impl Spool {
             if reader.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
                 break None;
             }
-            let text = match self.lines.row(&line, rows) {
-                Ok(text) if rows < members => text,
-                Ok(_) => break Some(Damage::Member(rows.to_string())),
+            match self.lines.row(&line, rows, members) {
+                Ok(text) => seen(text),
                 Err(damage) => break Some(damage),
-            };
-            let (values, error) = parsed(text);
-            seen(&values, error.as_deref());
+            }
             (whole, rows) = (whole + line.len() as u64, rows + 1);
         };
         drop(reader);
@@ -169,11 +163,7 @@ impl Spool {
     /// A reader of the rows; it fails if the rows do not belong to the members in order.
     fn whole_rows(&self, members: u64) -> Result<SpoolRows<'_>, Error> {
         let source = Source::Open(self.part.path().to_owned(), self.part.file().try_clone()?);
-        Ok(SpoolRows::new(
-            (&self.lines, &self.header),
-            vec![source],
-            self.first..members,
-            "--resume computes the members from there again",
-        ))
+        let advice = "--resume computes the members from there again";
+        Ok(SpoolRows::new(&self.lines, vec![source], self.first..members, advice))
     }
 }

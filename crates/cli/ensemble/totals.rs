@@ -1,5 +1,5 @@
 use super::about::About;
-use super::lines::parsed;
+use super::rows::parsed;
 use crate::table;
 use scene::Column;
 use serde_json::{Value, json};

@@ -3,19 +3,20 @@
 mod words;
 
 use crate::args::JobArguments;
-use crate::compare::{compare_scene, methods, unless_interrupted};
-use crate::comparison::Comparison;
-use crate::error::CliError;
+use crate::compare::{Comparison, compare_scene};
+use crate::error::{CliError, unless_interrupted};
 use crate::files::ClaimedFolder;
-use crate::inspect::method_names;
+use crate::inspect::{method_names, methods};
 use crate::interrupt::Interrupt;
-use crate::saves::Saves;
+use crate::resume::Saves;
+use crate::row_verdict::Totals;
 use crate::table::ComparisonRow;
-use crate::{job, precision, table, terminal};
+use crate::{precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
 use report::Report;
 use scene::{AnyScene, Overrides};
-use words::Answers;
+use serde_json::Value;
+use std::path::Path;
 
 /// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
 /// can lose some.
@@ -41,17 +42,16 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
         None => ClaimedFolder::first_free("noslip-report")?,
     };
     if arguments.all {
-        return job::everything(folder.path());
+        return everything(folder.path());
     }
     let names = method_names();
     let overrides = Overrides { step: Some(STEP), duration: Some(DURATION), ..Overrides::default() };
     let scene = AnyScene::load_with(SCENE, &[], &overrides, &names)?;
     let methods = methods(&METHODS, None, None)?;
     let interrupt = Interrupt::listen();
-    let Comparison { rows, mut report, interrupted } =
-        compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
-    let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
-    let mut sentences = words::sentences(&answers);
+    let Comparison { rows, mut report, interrupted } = compare_scene(&scene, &methods, &Saves::default(), &interrupt)?;
+    let objects: Vec<&Value> = rows.iter().map(|row| &row.json).collect();
+    let mut sentences = words::sentences(&objects);
     if interrupted.is_none() {
         let mut motion = scene.clone();
         motion.run_mut().duration = MOTION;
@@ -61,7 +61,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
         sentences.push(words::prices(&prices, MOTION));
     }
     let heading = words::heading(&scene);
-    let cells: Vec<Vec<String>> = answers.iter().map(Answers::cells).collect();
+    let cells: Vec<Vec<String>> = objects.into_iter().map(words::cells).collect();
     terminal::print(&format!("{heading}\n\n{}\n", table::left_aligned(&words::COLUMNS, &cells)))?;
     for sentence in &sentences {
         terminal::print(&words::wrapped(sentence))?;
@@ -76,4 +76,33 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     terminal::print(&format!("\npage: {}\n\n{}", folder.path().join("index.html").display(), words::FURTHER))?;
     let failed = CliError::of_failures(rows.into_iter().filter_map(ComparisonRow::unexpected));
     unless_interrupted(interrupted, None, failed)
+}
+
+/// `noslip --all`: the comparison of all methods on the bundled scenes, as tables and as a report.
+fn everything(folder: &Path) -> Result<(), CliError> {
+    let mut scenes = Vec::new();
+    let mut failures = Vec::new();
+    let mut totals = Totals::default();
+    let (interrupt, mut interrupted) = (Interrupt::listen(), None);
+    for bundled in scene::bundled() {
+        let scene = AnyScene::load(bundled.name, &method_names())?;
+        let methods = methods(&method_names(), scene.run().alpha, scene.run().tolerance)?;
+        let comparison = compare_scene(&scene, &methods, &Saves::default(), &interrupt)?;
+        comparison.print(&scene)?;
+        terminal::print("\n")?;
+        comparison.rows.iter().for_each(|row| totals.add(&row.json));
+        let failed = comparison.rows.into_iter().filter_map(ComparisonRow::unexpected);
+        failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name())));
+        scenes.push(comparison.report);
+        if let Some(made) = comparison.interrupted {
+            interrupted = Some(format!("on the scene {}, {made}", scene.name()));
+            break;
+        }
+    }
+    terminal::print(&totals.table(scenes.len()))?;
+    let title = "What accuracy costs, and what structure keeps".to_owned();
+    let report = Report { title, intro: table::INTRO.to_owned(), scenes, ..Report::default() };
+    report::write(&report, folder).map_err(CliError::Report)?;
+    terminal::print(&format!("\nreport: {}\n", folder.join("index.html").display()))?;
+    unless_interrupted(interrupted, None, CliError::of_failures(failures))
 }

@@ -36,52 +36,33 @@ a scene of your own              noslip new my.toml; noslip compare my.toml
 /// No line is longer.
 const WIDTH: usize = 80;
 
-/// The answers of a run to the columns' questions.
-#[derive(Debug)]
-pub(crate) struct Answers {
-    method: String,
-    /// The largest residual of the constraint (m/s).
-    slip: f64,
-    slips: bool,
-    energy: Energy,
-    error: Option<f64>,
-    seconds: f64,
-    /// Another method whose energy error becomes larger in a run of that length (s).
-    better: Option<(String, f64)>,
-    /// Why there is no answer.
-    failure: Option<String>,
+/// The row of the table: the answers of a row of `compare --json` to the columns' questions.
+pub(crate) fn cells(row: &Value) -> Vec<String> {
+    if let Some(failure) = row["failure"]["reason"].as_str() {
+        return vec![method(row).to_owned(), format!("failed: {failure}")];
+    }
+    vec![
+        method(row).to_owned(),
+        if slips(row) { format!("yes, {:.1e} m/s", slip(row)) } else { "no".to_owned() },
+        Energy::of(row).cell(),
+        row["error"].as_f64().map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
+        duration(row["wall_seconds"].as_f64().unwrap_or(f64::NAN)),
+    ]
 }
 
-impl Answers {
-    /// The answers from a row of `compare --json`.
-    pub(crate) fn of(row: &Value) -> Self {
-        let slip = row["constraint"]["max"].as_f64().unwrap_or(f64::NAN);
-        let better = row["better_than"].as_array().and_then(|all| all.first());
-        Self {
-            method: row["method"].as_str().unwrap_or_default().to_owned(),
-            slip,
-            slips: slips(row),
-            energy: Energy::of(row),
-            error: row["error"].as_f64(),
-            seconds: row["wall_seconds"].as_f64().unwrap_or(f64::NAN),
-            better: better.and_then(|other| Some((other["method"].as_str()?.to_owned(), other["from"].as_f64()?))),
-            failure: row["failure"]["reason"].as_str().map(str::to_owned),
-        }
-    }
+fn method(row: &Value) -> &str {
+    row["method"].as_str().unwrap_or_default()
+}
 
-    /// The row of the table.
-    pub(crate) fn cells(&self) -> Vec<String> {
-        if let Some(failure) = &self.failure {
-            return vec![self.method.clone(), format!("failed: {failure}")];
-        }
-        vec![
-            self.method.clone(),
-            if self.slips { format!("yes, {:.1e} m/s", self.slip) } else { "no".to_owned() },
-            self.energy.cell(),
-            self.error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
-            duration(self.seconds),
-        ]
-    }
+/// The largest residual of the constraint (m/s).
+fn slip(row: &Value) -> f64 {
+    row["constraint"]["max"].as_f64().unwrap_or(f64::NAN)
+}
+
+/// Another method whose energy error becomes larger in a run of that length (s).
+fn better(row: &Value) -> Option<(&str, f64)> {
+    let other = row["better_than"].as_array()?.first()?;
+    Some((other["method"].as_str()?, other["from"].as_f64()?))
 }
 
 /// A time, in the unit that it is read in.
@@ -100,14 +81,14 @@ pub(crate) fn heading(scene: &AnyScene) -> String {
 }
 
 /// The sentences on the methods that hold the constraint, and on drifts and their speed.
-pub(crate) fn sentences(all: &[Answers]) -> Vec<String> {
-    let made: Vec<&Answers> = all.iter().filter(|one| one.failure.is_none()).collect();
+pub(crate) fn sentences(rows: &[&Value]) -> Vec<String> {
+    let made: Vec<&Value> = rows.iter().filter(|row| row["failure"]["reason"].is_null()).copied().collect();
     vec![constraint(&made), energy(&made)]
 }
 
-fn constraint(made: &[&Answers]) -> String {
-    let (slipping, holding): (Vec<&&Answers>, Vec<&&Answers>) = made.iter().partition(|one| one.slips);
-    let most = |some: &[&&Answers]| some.iter().map(|one| one.slip).fold(0.0, f64::max);
+fn constraint(made: &[&Value]) -> String {
+    let (slipping, holding): (Vec<&Value>, Vec<&Value>) = made.iter().copied().partition(|row| slips(row));
+    let most = |some: &[&Value]| some.iter().map(|row| slip(row)).fold(0.0, f64::max);
     let held = (!holding.is_empty()).then(|| {
         let plural = if holding.len() == 1 { "s" } else { "" };
         format!("{} hold{plural} the no-slip constraint to round-off", list(&holding))
@@ -120,10 +101,10 @@ fn constraint(made: &[&Answers]) -> String {
 /// Picks one of the kinds, with its number.
 type Measured = fn(Energy) -> Option<f64>;
 
-fn energy(made: &[&Answers]) -> String {
-    let of = |kind: Measured| -> (Vec<&&Answers>, f64) {
-        let some: Vec<&&Answers> = made.iter().filter(|one| kind(one.energy).is_some()).collect();
-        let most = some.iter().filter_map(|one| kind(one.energy)).map(f64::abs).fold(0.0, f64::max);
+fn energy(made: &[&Value]) -> String {
+    let of = |kind: Measured| -> (Vec<&Value>, f64) {
+        let some: Vec<&Value> = made.iter().filter(|row| kind(Energy::of(row)).is_some()).copied().collect();
+        let most = some.iter().filter_map(|row| kind(Energy::of(row))).map(f64::abs).fold(0.0, f64::max);
         (some, most)
     };
     let kinds: [(Measured, &str); 5] = [
@@ -143,9 +124,9 @@ fn energy(made: &[&Answers]) -> String {
             parts.push(format!("the energy of {} {}", list(&some), does.replace("{}", &format!("{most:.1e}"))));
         }
     }
-    let better = made.iter().find_map(|one| Some((one, one.better.as_ref()?)));
-    parts.extend(better.map(|(one, (other, from))| {
-        format!("in runs longer than {from:.0} s the energy error of {other} is larger than that of {}", one.method)
+    let better = made.iter().find_map(|row| Some((method(row), better(row)?)));
+    parts.extend(better.map(|(method, (other, from))| {
+        format!("in runs longer than {from:.0} s the energy error of {other} is larger than that of {method}")
     }));
     sentence(parts.into_iter())
 }
@@ -214,8 +195,8 @@ fn sentence(parts: impl Iterator<Item = String>) -> String {
 }
 
 /// Names as a sentence has them: `a, b and c`.
-fn list(all: &[&&Answers]) -> String {
-    let names: Vec<&str> = all.iter().map(|one| one.method.as_str()).collect();
+fn list(rows: &[&Value]) -> String {
+    let names: Vec<&str> = rows.iter().map(|row| method(row)).collect();
     match names[..] {
         [.., _, last] => format!("{} and {last}", names[..names.len() - 1].join(", ")),
         _ => names.concat(),

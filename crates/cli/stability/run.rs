@@ -8,7 +8,7 @@ use dla::{AnyState, Dependency, Hint, Schedule, StepError};
 use harness::Method;
 use harness::stability::check::{self, Finding};
 use harness::stability::{Recorded, Recorder, Trial, VALUES, Verdict, claims, judge};
-use scene::{AnyScene, BuiltScene, Setting, with_settings};
+use scene::{AnyScene, Setting, with_settings};
 
 impl HardCase {
     /// Makes the runs of the case by the method, and judges them.
@@ -113,18 +113,35 @@ impl Bench<'_> {
         if let (AnyScene::Sleigh(scene), Some([speed, spin])) = (&mut scene, self.run.beyond) {
             (scene.start.speed, scene.start.turn_rate) = (speed, spin);
         }
-        let other = more.is_some();
-        let run = scene.run();
-        let steps = (run.duration / run.step).round().max(1.0) as u64;
-        let recording = Recording {
-            method: self.method,
-            from: if other { 0 } else { self.run.from.max(self.shared.from) },
-            every: self.run.every.max(self.shared.every),
-            back: !other && (self.run.back || self.shared.back),
-            schedule: Schedule { t0: 0.0, step: run.step, steps },
-        };
         let built = scene.built_for_analysis().map_err(|error| error.to_string())?;
-        let (names, recorded) = recording.on(&built);
+        let system = built.system();
+        let mechanism = system.mechanism();
+        // The first three values are places, the next ones rates; a sleigh has the rates of its body and of a rotor.
+        let last = system.named("rotor_rate").unwrap_or(VALUES - 1);
+        let places = [0, 1, 2, 3, 4, last];
+        let names = system.quantities();
+        let names = places.iter().filter_map(|k| names.get(*k)).map(|quantity| quantity.name.clone()).collect();
+        let look = |state: &AnyState| -> [f64; VALUES] {
+            // Velocities use the angles that the method sees; places count whole turns.
+            let place = state.unwrapped();
+            std::array::from_fn(|i| if i < 3 { place[i] } else { system.value(places[i], 0.0, state.q(), state.v()) })
+        };
+        let mut state = mechanism.state(&built.q, &built.v);
+        let mut recorder = Recorder::new(self.run.every.max(self.shared.every), &look);
+        let (other, run) = (more.is_some(), scene.run());
+        let from = if other { 0 } else { self.run.from.max(self.shared.from) };
+        let end = from + (run.duration / run.step).round().max(1.0) as u64;
+        let schedule = Schedule { t0: 0.0, step: run.step, steps: end };
+        let mut outcome =
+            harness::Run::of(&*mechanism, self.method).after(from).observe(&mut recorder).moves(&schedule, &mut state);
+        if !other && (self.run.back || self.shared.back) && outcome.is_ok() {
+            state = state.reversed();
+            // The return continues the same run: a new run would begin by removing a slip from the velocity.
+            let back = Schedule { steps: 2 * end, ..schedule };
+            outcome =
+                harness::Run::of(&*mechanism, self.method).after(end).observe(&mut recorder).moves(&back, &mut state);
+        }
+        let recorded = recorder.recorded(outcome.err());
         Ok((scene, names, recorded))
     }
 }
@@ -167,45 +184,5 @@ impl Kind {
             Self::Constraint => vec!["constraint".to_owned()],
             _ => of.to_vec(),
         }
-    }
-}
-
-/// A run that is recorded.
-struct Recording<'a> {
-    method: &'a Method,
-    from: u64,
-    every: u64,
-    back: bool,
-    schedule: Schedule,
-}
-
-impl Recording<'_> {
-    fn on(self, built: &BuiltScene) -> (Vec<String>, Recorded) {
-        let system = built.system();
-        let mechanism = system.mechanism();
-        // The first three values are places, the next ones rates; a sleigh has the rates of its body and of a rotor.
-        let last = system.named("rotor_rate").unwrap_or(VALUES - 1);
-        let places = [0, 1, 2, 3, 4, last];
-        let names = system.quantities();
-        let names = places.iter().filter_map(|k| names.get(*k)).map(|quantity| quantity.name.clone()).collect();
-        let look = |state: &AnyState| -> [f64; VALUES] {
-            // Velocities use the angles that the method sees; places count whole turns.
-            let place = state.unwrapped();
-            std::array::from_fn(|i| if i < 3 { place[i] } else { system.value(places[i], 0.0, state.q(), state.v()) })
-        };
-        let mut state = mechanism.state(&built.q, &built.v);
-        let mut recorder = Recorder::new(self.every, &look);
-        let end = self.from + self.schedule.steps;
-        let schedule = Schedule { steps: end, ..self.schedule };
-        let run = harness::Run::of(&*mechanism, self.method).after(self.from).observe(&mut recorder);
-        let mut outcome = run.moves(&schedule, &mut state);
-        if self.back && outcome.is_ok() {
-            state = state.reversed();
-            // The return continues the same run: a new run would begin by removing a slip from the velocity.
-            let back = Schedule { steps: 2 * end, ..schedule };
-            let run = harness::Run::of(&*mechanism, self.method).after(end).observe(&mut recorder);
-            outcome = run.moves(&back, &mut state);
-        }
-        (names, recorder.recorded(outcome.err()))
     }
 }
