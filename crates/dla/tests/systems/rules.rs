@@ -50,7 +50,7 @@ fn check<Sys: System<N, M>, const N: usize, const M: usize>(
         let (ends, block) = rules.linearised(system, (t, h), q0, v);
         let (right, right_block) = Discretisation::<N, M>::linearised(&expected, system, (t, h), q0, v);
         let momenta = rules.momenta(system, (t, h), q0, v);
-        let by_itself = Discretisation::<N, M>::momenta(&expected, system, (t, h), q0, v, v);
+        let by_itself = Discretisation::<N, M>::momenta(&expected, system, (t, h), q0, v);
         let same = |a: f64, b: f64| assert_relative_eq!(a, b, epsilon = 1e-13, max_relative = 1e-12);
         for found in [ends, momenta, by_itself] {
             assert_eq!(found.forces.is_some(), right.forces.is_some());
