@@ -264,12 +264,11 @@ mod tests {
         let mut state = State::new([0.0, 0.0, 0.1], [5.0, 1e-4 * 0.1_f64.sin() * 0.3, 0.3], [false; 3]);
         for k in 0..200 {
             let t = f64::from(k) * STEP;
-            match method.continued_step::<3, 1>(&Leaning, t, STEP, &mut state) {
-                Some(_) => count += 1,
-                None => {
-                    method.step(&Leaning, t, STEP, &mut state).unwrap();
-                }
+            if method.continued_step::<3, 1>(&Leaning, t, STEP, &mut state).is_none() {
+                method.step(&Leaning, t, STEP, &mut state).unwrap();
+                continue;
             }
+            count += 1;
             let ([[_, a, b]], _) = System::constraint(&Leaning, t, state.q());
             let terms = [a * state.v()[1], b * state.v()[2]];
             assert!((terms[0] + terms[1]).abs() <= 64.0 * f64::EPSILON * (terms[0].abs() + terms[1].abs()));
