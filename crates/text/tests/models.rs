@@ -274,6 +274,9 @@ fn answers_by_formulas_are_those_by_derivatives() {
     answered_alike::<4, 2>(&scaled);
     answered_alike::<8, 5>(&scaled);
     answered_alike::<18, 6>(&board());
+    let mut held = racer();
+    held.positions = vec!["x*cos(phi) - y^2*sin(theta)/3".to_owned()];
+    answered_alike::<8, 5>(&held);
 }
 
 fn answered_alike<const N: usize, const M: usize>(words: &Words) {
@@ -282,7 +285,7 @@ fn answered_alike<const N: usize, const M: usize>(words: &Words) {
     let filled = |first: usize, count: usize| -> [f64; N] {
         std::array::from_fn(|i| if i < count { number(first + i) } else { 0.0 })
     };
-    let (q, v, xi) = (filled(0, n), filled(7, n), filled(19, n - words.constraints.len()));
+    let (q, v, xi) = (filled(0, n), filled(7, n), filled(19, n - words.constraints.len() - words.positions.len()));
     let impulse: [f64; M] = std::array::from_fn(|k| number(k + 31));
     let system = TextSystem::<N, M>::new(Arc::new(text::TextModel::new(words).unwrap()), 0.3, &q).unwrap();
     let (formulas, functions): (_, &dyn Mechanics<N, M>) =
@@ -322,6 +325,9 @@ fn answers<const N: usize, const M: usize>(
     let bracket = system.bracket(lagrangian::Lanes::constant(t), &lanes(q), &lanes(xi)).unwrap();
     let energy = system.energy_slope(lagrangian::Lanes::constant(t), &lanes(q), &lanes(xi)).unwrap();
     let rates = bracket.rates(&lanes(q), &lanes(v));
+    let misses = system.position_misses(t, q).map_or(Vec::new(), |misses| misses.into_iter().flatten().collect());
+    let mut curvature = [[0.5; N]; N];
+    system.add_position_curvature(t, q, impulse, &mut curvature);
     let force = second.force.map_or(Vec::new(), |[in_q, in_v]| [duals(&in_q), duals(&in_v)].concat());
     vec![
         ("energy", vec![system.lagrangian(t, q, v), system.energy(t, q, v)]),
@@ -336,6 +342,7 @@ fn answers<const N: usize, const M: usize>(
         ("residual", [&system.residual(t, q, v)[..], &duals(&system.residual_along(t, q, v, 0.4))].concat()),
         ("constraint_slopes", [constraint.a.as_flattened(), &constraint.g, constraint.g_q.as_flattened()].concat()),
         ("constraint_slopes", [&w[..], w_q.as_flattened()].concat()),
+        ("positions", [&duals(&misses)[..], curvature.as_flattened()].concat()),
         ("motion", [&motion.acceleration[..], &motion.multiplier].concat()),
         ("basis", basis.vectors().concat()),
         ("inverse_reduced_mass", system.inverse_reduced_mass(t, q, v, &basis).unwrap().concat()),
