@@ -183,7 +183,7 @@ fn of_sleigh(system: &dyn SceneSystem, e: &Equilibrium) -> (Value, Vec<(&'static
 /// The rates by their names, and the coordinates on which the equations depend, with their values.
 fn of_text(coordinates: &[Coordinate], e: &Equilibrium) -> (Value, Vec<(&'static str, String)>) {
     let rates: Vec<_> = coordinates.iter().zip(&e.v).map(|(of, rate)| (format!("{}'", of.name), *rate)).collect();
-    let place = e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
+    let place = e.place.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
     let place: Vec<(String, f64)> = place.collect();
     let object =
         |of: &[(String, f64)]| -> Value { of.iter().map(|(name, value)| (name.clone(), json!(value))).collect() };

@@ -2,13 +2,15 @@
 
 import argparse
 import json
+import resource
+import signal
 import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
-# A process that takes longer counts as one without end (s).
-PATIENCE = 120.0
+# A process that takes longer counts as one without end (s of the processor: others may use it too), or ten times as long by the clock.
+PATIENCE = 120
 
 
 @dataclass
@@ -24,6 +26,13 @@ class Answer:
         """The first line of the error, without the numbers in it."""
         lines = [line for line in self.messages.splitlines() if line.startswith("error")] or self.messages.splitlines()
         return lines[0] if lines else ""
+
+
+NO_END = Answer(-1, None, f"error: no end after {PATIENCE} s")
+
+
+def bounded():
+    resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE + 5))
 
 
 class Program:
@@ -43,9 +52,13 @@ class Program:
         """One command with `--json`."""
         command = [self.path, *map(str, arguments), "--json"]
         try:
-            done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=PATIENCE, errors="replace")
+            done = subprocess.run(
+                command, check=False, capture_output=True, text=True, timeout=10 * PATIENCE, errors="replace", preexec_fn=bounded
+            )
         except subprocess.TimeoutExpired:
-            return Answer(-1, None, f"error: no end after {PATIENCE:.0f} s")
+            return NO_END
+        if done.returncode == -signal.SIGXCPU:
+            return NO_END
         try:
             shown = json.loads(done.stdout)
         except ValueError:

@@ -63,6 +63,9 @@ impl Linear {
     /// `|K| |x|`, and the reactions `G' lambda` are added here. The round-off of a correction added to the unknowns counts too, as in
     /// the static methods.
     ///
+    /// A constraint is met to the rounding of the largest correction, whichever unknowns it has: at rest, where all corrections are the
+    /// round-off of large reactions, elimination mixes these.
+    ///
     /// The correction `dlambda` of the multipliers must be included: if the round-off of a constraint moves the unknowns, by `g/h` of a
     /// joint in a short step, the reactions balance that motion.
     #[cold]
@@ -73,10 +76,12 @@ impl Linear {
         changes: &mut [f64],
     ) -> f64 {
         changes.fill(0.0);
+        let (coordinates, most) = (x.len(), largest(&self.solution[..x.len()]));
         for (j, (d, x)) in self.solution.iter().zip(x).enumerate() {
             for (i, value) in self.pattern.column(&self.values, j) {
                 changes[i] += value * d;
-                sizes[i] += (value * x).abs() + (value * d).abs();
+                let with = if i < coordinates { d.abs() } else { most };
+                sizes[i] += value.abs() * (x.abs() + with);
             }
         }
         for (j, (d, lambda)) in (x.len()..).zip(corrections.iter().zip(multipliers)) {

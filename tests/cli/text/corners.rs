@@ -140,11 +140,34 @@ fn friction_by_sign_is_told_from_a_long_step() {
     let block = "coordinates = { x = \"m\" }\nlagrangian = \"x'^2/2 + x\"\nforces = { x = \"-2*sign(x')\" }";
     let folder = Folder::new();
     folder.write("s.toml", scene(block, "\"x'\" = -1.0", [0.01, 1.0]));
-    for method in ["dla", "gauss8", "lobatto3", "dop853"] {
+    for method in ["dla", "gauss8", "lobatto3", "dop853", "rk4", "rk4-projected", "rk4-reduced"] {
         let outcome = folder.line(&format!("run s.toml --method {method}"));
         assert_eq!(outcome.code, 1, "{outcome:?}");
         outcome.assert_told(method, &["coordinate 0", "`sign(v)`", "`tanh(v/eps)`", "valid up to t = 0.3"]);
         assert!(!outcome.stderr.contains("of its length"), "{outcome:?}");
+    }
+    // The positive control: a block that friction does not hold turns round after 0.2 s.
+    folder.write("s.toml", scene(&block.replace("+ x", "+ 3*x"), "\"x'\" = -1.0", [0.01, 1.0]));
+    for method in ["rk4", "rk4-reduced"] {
+        let end = folder.json(&format!("run s.toml --json --method {method}"))["final"]["x"].clone();
+        agree(&end, &json!(0.22), 1e-2);
+    }
+}
+
+/// A force may be smooth and yet as steep as a jump: the tolerance is kept, beside `gauss16` with steps of 0.5 ms.
+#[test]
+fn steep_forces_are_seen_by_adaptive_methods() {
+    let folder = Folder::new();
+    let cases = [("tanh(x'/0.002)", 0.480_244_645_183_2), ("x'/sqrt(x'^2 + 4e-6)", 0.480_255_744_745_8)];
+    for (shape, expected) in cases {
+        let block = format!(
+            "coordinates = {{ x = \"m\" }}\nlagrangian = \"x'^2/2 - 2*x^2\"\nforces = {{ x = \"-0.2*{shape}\" }}"
+        );
+        folder.write("s.toml", scene(&block, "x = 2.0", [1.5, 12.0]));
+        for method in ["gauss-adaptive", "dop853"] {
+            let end = folder.json(&format!("run s.toml --json --method {method}"))["final"]["x"].clone();
+            agree(&end, &json!(expected), 5e-10);
+        }
     }
 }
 
@@ -164,6 +187,11 @@ constraints = [\"(x' + fs*y')/n + 0.05*phi'\"]";
     }
     let run = folder.json("run s.toml --json --method dla --duration 0.1");
     assert!(run["constraint"]["max"].as_f64().unwrap() < 1e-14);
+    // The kinetic metric is none, and the projection onto the positions takes another.
+    folder.write("s.toml", scene(disc, "s = -1.0\n\"s'\" = 2.0", [1e-3, 0.6]));
+    let [gauss, other] =
+        ["gauss8", "dop853"].map(|method| folder.json(&format!("run s.toml --json --method {method}")));
+    agree(&gauss["final"]["s"], &other["final"]["s"], 1e-9);
     let loose = "coordinates = { x = \"m\", y = \"m\" }\nlagrangian = \"x'^2/2\"\nconstraints = [\"x' - t\"]";
     folder.write("s.toml", scene(loose, "", [0.1, 1.0]));
     folder.refused("check s.toml", &["`system.lagrangian`", "does not contain the rate", "do not determine it"]);

@@ -216,6 +216,32 @@ fn no_limit(bowls: &[(&str, &str)]) {
     }
 }
 
+/// A coordinate that the equations do not contain has its place if a position determines it, and any place if not.
+#[test]
+fn places_that_positions_determine_are_told() {
+    let text = |position: &str| {
+        format!(
+            "[system]\ncoordinates = {{ x = \"m\", y = \"m\", z = \"m\" }}\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - x^2/2\"\n\
+             positions = [\"{position}\"]\n[start]\nx = 0.5\n{RUN}"
+        )
+    };
+    let place = |position: &str| steady(&text(position), "")[0]["depends_on"].clone();
+    let determined = place("y - cos(x) - 1");
+    assert!((number(&determined["y"]) - 2.0).abs() < 1e-12 && determined["z"].is_null(), "{determined}");
+    let open = place("y - z - cos(x)");
+    assert!(number(&open["x"]).abs() < 1e-12 && open["y"].is_null() && open["z"].is_null(), "{open}");
+}
+
+/// Near a double root a search ends in motions of 1e-9 m/s: they are the rest beside them, with all of its family.
+#[test]
+fn slow_motions_beside_a_rest_are_that_rest() {
+    let path = format!("{}/tests/cases/rest-double-root.toml", env!("CARGO_MANIFEST_DIR"));
+    let found = steady(&std::fs::read_to_string(path).unwrap(), "");
+    let near: Vec<&Value> = found.iter().filter(|e| (number(&e["depends_on"]["y"]) + 0.307016).abs() < 1e-5).collect();
+    assert_eq!(near.len(), 1, "{found:?}");
+    assert!(near[0]["family"] == 1 && near[0]["rates"]["x'"] == 0.0, "{}", near[0]);
+}
+
 /// Random systems with positions, rows and forces: places on the constraints where nothing is pushed, and their eigenvalues.
 #[test]
 fn rest_places_of_random_systems_have_their_eigenvalues() {

@@ -68,7 +68,9 @@ pub(crate) fn suspect_along<const N: usize, const M: usize>(
     v: &[f64; N],
     error: StepError,
 ) -> StepError {
-    if let (Some(Hint::ShorterStep { .. }), Some(coordinate)) = (error.hint(), jumps_at_rest(system, t0, state)) {
+    if let (Some(Hint::ShorterStep { .. }), Some(coordinate)) =
+        (error.hint(), jumps_at_rest(system, t0, state.q(), state.v()))
+    {
         return StepError::JumpsAtRest { coordinate };
     }
     if !error.has_lost_numbers() {
@@ -87,15 +89,35 @@ pub(crate) fn suspect_along<const N: usize, const M: usize>(
     error
 }
 
+/// So near to rest smooth forces are the same from both sides, but for this part of their size at the velocity.
+const NEAR: f64 = 1e-12;
+
+/// Fails if a force that jumps at rest holds the system there: it drives a velocity along `v` back to zero, and one against `v` too. An
+/// explicit step would go to and fro, and creep.
+#[cold]
+#[inline(never)]
+pub(crate) fn not_held_at_rest<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Result<(), StepError> {
+    let Some(coordinate) = jumps_at_rest(system, t, q, v) else { return Ok(()) };
+    let pushed = |part: f64| {
+        let motion = system.motion(t, q, &v.map(|v| part * v)).ok();
+        motion.is_some_and(|motion| part * v[coordinate] * motion.acceleration[coordinate] < 0.0)
+    };
+    if pushed(NEAR) && pushed(-NEAR) { Err(StepError::JumpsAtRest { coordinate }) } else { Ok(()) }
+}
+
 /// The coordinate whose force at rest differs from one side to the other: Coulomb's friction, written with `sign`.
 fn jumps_at_rest<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     t: f64,
-    state: &State<N>,
+    q: &[f64; N],
+    v: &[f64; N],
 ) -> Option<usize> {
-    // So near to rest smooth forces are the same from both sides, but for this part of what they are at the state.
-    const NEAR: f64 = 1e-12;
-    let force = |part: f64| system.force(t, state.q(), &state.v().map(|v| part * v));
+    let force = |part: f64| system.force(t, q, &v.map(|v| part * v));
     let (before, after, there) = (force(NEAR)?, force(-NEAR)?, force(1.0)?);
     (0..N).find(|&i| (before[i] - after[i]).abs() > 0.1 * there[i].abs().max(before[i].abs()))
 }

@@ -89,7 +89,9 @@ fn correction<const N: usize, const M: usize>(
     let some = RowSpace::new(&rows, &mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
     let level = mapped(misses, |g| g.map_or(0.0, |g| -g.re));
     let saddle = Saddle { block: mass, transposed: rows, rows, right: [0.0; N], level };
-    saddle.solve_some(some).map(|(moved, _)| moved)
+    // Without a mass in some direction the kinetic metric is none, and another one serves.
+    let euclidean = || Saddle { block: from_fn(|i| from_fn(|j| f64::from(i == j))), ..saddle }.solve_some(some);
+    saddle.solve_some(some).or_else(|_| euclidean()).map(|(moved, _)| moved)
 }
 
 fn sup<const N: usize>(x: &[f64; N]) -> f64 {

@@ -18,6 +18,8 @@ pub struct Equilibrium {
     pub xi: Vec<f64>,
     /// The coordinates that the equations depend on, the shape; all other coordinates are cyclic.
     pub shape: Vec<usize>,
+    /// The shape, and the coordinates that the constraints on positions determine by it.
+    pub place: Vec<usize>,
     /// The number of directions that the linear equations leave at rest: the parameters of its family; 0 if it stands alone.
     pub family: usize,
     /// The eigenvalues of the flow in shape and quasi-velocities, real and imaginary parts (1/s), the largest real part first: along the

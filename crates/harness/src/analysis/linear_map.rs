@@ -9,6 +9,8 @@ pub(super) struct AllowedDirections {
     along: DMatrix<f64>,
     /// The same directions in all coordinates and the quasi-velocities.
     whole: DMatrix<f64>,
+    /// The remaining coordinates that the constraints on positions determine by the shape.
+    pub(super) determined: Vec<usize>,
 }
 
 impl AllowedDirections {
@@ -18,6 +20,7 @@ impl AllowedDirections {
         let (n, count) = (rows.ncols(), shape.len());
         let others: Vec<usize> = (0..n).filter(|i| !shape.contains(i)).collect();
         let (of_others, of_shape) = (rows.select_columns(&others), rows.select_columns(shape));
+        let open = Split::by(&of_others, DEPENDENT)?.unseen;
         // The combinations of constraints that the remaining coordinates cannot make up for.
         let left = Split::by(&of_others.transpose(), DEPENDENT)?.unseen;
         let kept = Split::by(&(left.transpose() * &of_shape), DEPENDENT)?.unseen;
@@ -32,7 +35,9 @@ impl AllowedDirections {
             let follow = -(of_others.pseudo_inverse(DEPENDENT).ok()? * of_shape * &kept);
             others.iter().enumerate().for_each(|(i, &q)| whole.view_mut((q, 0), (1, k)).copy_from(&follow.row(i)));
         }
-        Some(Self { along, whole })
+        let is_determined = |(i, _): &(usize, &usize)| open.row(*i).norm() <= DEPENDENT;
+        let determined = others.iter().enumerate().filter(is_determined).map(|(_, &q)| q).collect();
+        Some(Self { along, whole, determined })
     }
 
     /// Restricts a matrix to these directions. Its rows belong to shape and quasi-velocities, its columns to all coordinates and the

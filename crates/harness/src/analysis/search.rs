@@ -12,6 +12,8 @@ use std::f64::consts::PI;
 const ROOT: f64 = 1e-12;
 /// Quasi-velocities below this, relative to one plus the largest, belong to a motion that comes to rest.
 const REST: f64 = 1e-9;
+/// As [`REST`], if there is a rest as near: a search comes only so near to a double root.
+const NEARLY_REST: f64 = 1e-5;
 /// Distances (m, rad) from a first guess at which the search goes on if it ends there, and points and times (s) at which the dependence of
 /// the equations is tested: in general position.
 const OFFSETS: [f64; 5] = [0.0, 0.37, -0.61, 0.83, 1.9];
@@ -146,8 +148,14 @@ impl<'a> Searching<'a> {
         let nothing = f64::EPSILON * f64::EPSILON * (1.0 + z.norm());
         let (q, xi) = split(&z.map(|x| if x.abs() < nothing { 0.0 } else { x }));
         let size = |x: &[f64]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        if moving > 0 && size(&xi) <= REST * (1.0 + size(&q)) {
-            return self.from(&q, &vec![0.0; q.len()]);
+        if moving > 0 && size(&xi) <= NEARLY_REST * (1.0 + size(&q)) {
+            let rest = self.from(&q, &vec![0.0; q.len()]);
+            let apart =
+                |rest: &Equilibrium| rest.q.iter().zip(&q).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            let here = |rest: &Equilibrium| apart(rest) <= NEARLY_REST * (1.0 + size(&q));
+            if size(&xi) <= REST * (1.0 + size(&q)) || rest.as_ref().is_some_and(here) {
+                return rest;
+            }
         }
         self.at(moving == 0, &q, |system| self.linearised(system, &q, &xi))?
     }
@@ -203,8 +211,10 @@ impl<'a> Searching<'a> {
         let slope = along.restrict(&field.derivative.select_rows(&self.rows()).select_columns(&self.columns(free)));
         let (family, flow) = with_family(slope, 0.0, 0.0, |[re, _]| re)?;
         let stable = flow.is_stable_flow();
+        let mut place: Vec<usize> = self.shape.iter().copied().chain(along.determined).collect();
+        place.sort_unstable();
         let (q, xi, shape) = (q.to_vec(), xi.to_vec(), self.shape.clone());
-        Some(Equilibrium { q, v: field.velocity, xi, shape, family, flow: flow.values, stable })
+        Some(Equilibrium { q, v: field.velocity, xi, shape, place, family, flow: flow.values, stable })
     }
 
     /// Whether two equilibria are the same, or of one family: with quasi-velocities of the same signs, and at rest with equally many

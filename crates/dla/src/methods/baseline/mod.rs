@@ -12,6 +12,8 @@ pub use implicit_midpoint::ImplicitMidpoint;
 pub use rk4::{Rk4, Rk4Projected};
 pub use rk4_reduced::Rk4Reduced;
 
+use crate::suspect::not_held_at_rest;
+use crate::{Mechanics, StepError};
 use lagrangian::from_fn;
 
 /// `x + h k`.
@@ -28,3 +30,16 @@ fn weighted<const N: usize>(h: f64, k: &[[f64; N]; 4]) -> [f64; N] {
 
 /// Where the four stages are evaluated, as fractions of the step; each uses the slope of the one before it.
 pub(crate) const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+
+/// Fails if dry friction holds the system at rest, where the velocities of the stages lie on both sides of zero.
+#[inline(always)]
+fn moving<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t: f64,
+    q: &[f64; N],
+    velocities: &[[f64; N]; 4],
+) -> Result<(), StepError> {
+    let [first, others @ ..] = velocities;
+    let turned = |v: &&[f64; N]| (0..N).any(|i| v[i] * first[i] <= 0.0 && (v[i] - first[i]).abs() > 0.0);
+    others.iter().find(turned).map_or(Ok(()), |v| not_held_at_rest(system, t, q, v))
+}

@@ -1,4 +1,4 @@
-use super::{STAGES, shifted, weighted};
+use super::{STAGES, moving, shifted, weighted};
 use crate::{Mechanics, OneStep, StackUse, State, StepError, StepReport, on_branch};
 use lagrangian::{Saddle, from_fn};
 
@@ -33,6 +33,7 @@ fn increments<const N: usize, const M: usize>(
         velocities[i] = v;
         accelerations[i] = system.motion(t + stage * h, &q, &v).map_err(StepError::Motion)?.acceleration;
     }
+    moving(system, t, q0, &velocities)?;
     Ok((weighted(h, &velocities), weighted(h, &accelerations)))
 }
 

@@ -1,4 +1,4 @@
-use super::{STAGES, shifted, weighted};
+use super::{STAGES, moving, shifted, weighted};
 use crate::{Mechanics, OneStep, StackUse, State, StepError, StepReport};
 
 /// The classical Runge-Kutta method on the reduced equations.
@@ -34,6 +34,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Rk4Reduced {
             let slope = system.reduced_slope(t + stage * h, &q, &xi)?;
             (velocities[i], rates[i]) = (slope.velocity, slope.acceleration);
         }
+        moving(system, t, q0, &velocities)?;
         let increment = weighted(h, &velocities);
         let xi1 = shifted(&xi0, 1.0, &weighted(h, &rates));
         let v1 = system.velocity_of(t + h, &state.ahead(&increment), &xi1)?;

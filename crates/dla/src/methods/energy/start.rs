@@ -72,7 +72,37 @@ impl<const N: usize> EnergyStart<N> {
         let ahead = self.state.ahead(&mapped(self.state.v(), |v| h * v));
         let start = self.rounding_at(system, (t0, h), self.state.q());
         let end = self.rounding_at(system, (t0 + h, h), &ahead);
-        from_fn(|g| from_fn(|i| larger(start[g][i], end[g][i])))
+        let rounded = from_fn(|g| from_fn(|i| larger(start[g][i], end[g][i])));
+        self.carried(system, (t0, h), rounded).unwrap_or(rounded)
+    }
+
+    /// With what the next iteration makes of it: rates at places and quasi-velocities that are rounded. A heading of little inertia is
+    /// rounded by far more than its digits, and turns the velocity. `None` if the system has no basis.
+    fn carried<const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        [mut q_rate, mut pi_rate, mut xi]: [[f64; N]; 3],
+    ) -> Option<[[f64; N]; 3]> {
+        let (q, places, speeds) = (self.state.q(), mapped(&q_rate, |rate| h * rate), xi);
+        let here = rates(system, t, q, &self.xi)?;
+        for k in 0..2 * N {
+            let (mut place, mut speed) = (*q, self.xi);
+            if k < N {
+                place[k] += places[k]
+            } else {
+                speed[k - N] += speeds[k - N]
+            }
+            let [q_there, pi_there] = rates(system, t, &place, &speed)?;
+            for i in 0..N {
+                q_rate[i] += (q_there[i] - here[0][i]).abs();
+                pi_rate[i] += (pi_there[i] - here[1][i]).abs();
+            }
+        }
+        for (a, xi) in xi.iter_mut().enumerate() {
+            *xi += (0..N).map(|b| self.inverse_mass[a][b].abs() * h.abs() * pi_rate[b]).sum::<f64>();
+        }
+        Some([q_rate, pi_rate, xi])
     }
 
     fn rounding_at<const M: usize>(
@@ -101,6 +131,25 @@ impl<const N: usize> EnergyStart<N> {
             (0..N).map(|i| force[i] * (f64::EPSILON * q[i].abs() + h * h * acceleration[i])).sum()
         })
     }
+}
+
+/// The rates of coordinates and quasi-momenta.
+fn rates<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t: f64,
+    q: &[f64; N],
+    xi: &[f64; N],
+) -> Option<[[f64; N]; 2]> {
+    let (t, q, xi) = (Lanes::constant(t), mapped(q, Lanes::constant), mapped(xi, Lanes::constant));
+    let bracket = system.bracket(t, &q, &xi)?;
+    let (q_rate, mut pi_rate) = bracket.rates(&system.energy_slope(t, &q, &xi)?.h_q, &xi);
+    if let Some(force) = system.force_at_eight(t, &q, &q_rate) {
+        let along = bracket.along_basis(&force);
+        for i in 0..N {
+            pi_rate[i] += along[i];
+        }
+    }
+    Some([q_rate, pi_rate].map(|rates| rates.map(|rate| rate.0[0])))
 }
 
 /// `carried - pi`; zero if it is more than rounding, as after a step with another system.

@@ -14,8 +14,8 @@ use std::ops::ControlFlow;
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
 ///
 /// The highest Legendre coefficient of the slopes of a step shows how smooth the motion is along it: if coefficients fall off evenly, its
-/// power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. If functions of the system have
-/// corners or change with time, the defect of the equations at other points is a second estimate, which detects corners, jumps and pulses.
+/// power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. The defect of the equations at other
+/// points is a second estimate, which detects corners, jumps, pulses and what is as steep.
 /// Steps are powers of the fourth root of two (s), so that a few fixed matrices continue the polynomial of one step into the next. Stages
 /// are iterated to a fraction of the tolerance, not to rounding: the method is on the constraint by construction, but it is symmetric to
 /// the tolerance only, and does not keep what [`Gauss`] keeps over long runs.

@@ -5,13 +5,14 @@ use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_legendre, lagrange};
 use lagrangian::{Smoothness, from_fn};
 
-/// How far the Legendre coefficients of a step are trusted. They alone cannot tell a corner, a jump or a pulse from a smooth motion, so the
-/// trust depends on the kind of functions that the system has.
+/// How far the Legendre coefficients of a step are trusted. They alone cannot tell a corner, a jump or a pulse from a smooth motion, nor a
+/// smooth function that is as steep, so the trust depends on the kind of functions that the system has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Doubt {
-    /// A step is examined again if its coefficients show an error above this (tolerances). `None` if the functions of the system are smooth
-    /// and do not change with time: the coefficients alone then determine its steps.
-    above: Option<f64>,
+    /// A step is examined again if its coefficients show an error above this (tolerances).
+    above: f64,
+    /// Whether a step that is much longer than the last is examined in any case: something may happen of which no state tells.
+    of_grown: bool,
 }
 
 /// Largest accepted error of a step (tolerances); a run has many corners.
@@ -68,7 +69,7 @@ type Pair<const N: usize> = [[f64; N]; 2];
 impl Doubt {
     /// The doubt for functions of this smoothness.
     pub(super) fn of(Smoothness { corners, driven }: Smoothness) -> Self {
-        Self { above: if corners { Some(MOST) } else { driven.then_some(60.0 * MOST) } }
+        Self { above: if corners { MOST } else { 60.0 * MOST }, of_grown: corners || driven }
     }
 
     /// The factor by which the error of a step is too large; `None` if it is not. A step that has `grown` is much longer than the last, so
@@ -84,7 +85,7 @@ impl Doubt {
         attempt: &Attempt<'_, N>,
         grown: bool,
     ) -> Option<f64> {
-        let error = self.error(system, self.above?, attempt, grown);
+        let error = self.error(system, attempt, grown);
         (error > MOST).then(|| error / MOST)
     }
 
@@ -92,16 +93,15 @@ impl Doubt {
     fn error<const N: usize, const M: usize>(
         self,
         system: &dyn Mechanics<N, M>,
-        above: f64,
         of: &Attempt<'_, N>,
         grown: bool,
     ) -> f64 {
         let (t, h) = of.step;
         let tail = of.tail();
-        let (mut error, mut doubtful) = (0.0, grown);
+        let (mut error, mut doubtful) = (0.0, grown && self.of_grown);
         for &[last, before] in tail.iter().flatten() {
             let even = (last / before).min(1.0);
-            doubtful |= last > SMALL && last * even * even * even > above;
+            doubtful |= last > SMALL && last * even * even * even > self.above;
         }
         let between = of.rule.between();
         for (at, (end, values)) in [t, t + h].into_iter().zip(of.ends.iter().zip(&between.ends)) {

@@ -212,7 +212,8 @@ impl<'a> Convergence<'a> {
             return Ok(true);
         }
         // The corrections themselves are compared: relative to unknowns that shrink they may grow and yet converge.
-        self.growths += u32::from(step > before && !slight && !self.met);
+        // Corrections that move the place by its rounding only lead nowhere else, however they grow.
+        self.growths += u32::from(step > before && step > near && !slight && !self.met);
         let (correction, history) = (step / size, self.history());
         if self.growths == GROWTHS {
             return Err(NewtonError::Diverged { iteration, correction, before: before / size, history });
