@@ -18,11 +18,25 @@ pub struct TextMechanics {
     shape: Shape,
 }
 
+/// A shape `(N, M)` has room for `n` coordinates and `m` constraints if `n <= N`, `m <= M` and `n - m <= N - M`.
 enum Shape {
     Small(Shaped<4, 2>),
     Middle(Shaped<8, 5>),
+    Large(Shaped<12, 6>),
     /// It has room for [`MOST_COORDINATES`] with any number of constraints up to [`MOST_CONSTRAINTS`].
-    Large(Shaped<18, 6>),
+    Largest(Shaped<18, 6>),
+}
+
+/// Evaluates an expression of the system in its shape.
+macro_rules! in_its_shape {
+    ($shape:expr, $system:ident => $value:expr) => {
+        match $shape {
+            Shape::Small($system) => $value,
+            Shape::Middle($system) => $value,
+            Shape::Large($system) => $value,
+            Shape::Largest($system) => $value,
+        }
+    };
 }
 
 /// A system of text in one shape.
@@ -50,7 +64,8 @@ impl TextMechanics {
     fn in_first_shape(model: &Arc<TextModel>, start: &TextStart, family: Option<&Family>) -> Option<Self> {
         let shape = (Shaped::new(model, start, family).map(Shape::Small))
             .or_else(|| Shaped::new(model, start, family).map(Shape::Middle))
-            .or_else(|| Shaped::new(model, start, family).map(Shape::Large))?;
+            .or_else(|| Shaped::new(model, start, family).map(Shape::Large))
+            .or_else(|| Shaped::new(model, start, family).map(Shape::Largest))?;
         Some(Self { model: Arc::clone(model), shape })
     }
 
@@ -63,21 +78,13 @@ impl TextMechanics {
     /// The system for runs.
     #[must_use]
     pub fn mechanism(&self) -> Box<dyn Mechanism + '_> {
-        match &self.shape {
-            Shape::Small(shaped) => shaped.mechanism(),
-            Shape::Middle(shaped) => shaped.mechanism(),
-            Shape::Large(shaped) => shaped.mechanism(),
-        }
+        in_its_shape!(&self.shape, system => system.mechanism())
     }
 
     /// The system as a member of its family ([`of_family`](Self::of_family)); `None` for any other system.
     #[must_use]
     pub fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>> {
-        match &self.shape {
-            Shape::Small(shaped) => shaped.member(),
-            Shape::Middle(shaped) => shaped.member(),
-            Shape::Large(shaped) => shaped.member(),
-        }
+        in_its_shape!(&self.shape, system => system.member())
     }
 }
 

@@ -1,5 +1,5 @@
 use lagrangian::linear::{Inverse, larger};
-use lagrangian::{from_fn, mul_add};
+use lagrangian::{from_fn, mapped, mul_add};
 
 /// Larger systems, by coordinates or constraints, have no frozen Jacobian: each of their steps is made without memory.
 pub(crate) const COORDINATES: usize = 12;
@@ -16,6 +16,8 @@ pub(crate) type UnknownsRow = [f64; COORDINATES];
 #[repr(align(64))]
 pub(crate) struct StepDerivatives {
     columns: [UnknownsRow; COORDINATES],
+    /// The absolute values of the matrix itself, by rows.
+    sizes: [UnknownsRow; COORDINATES],
     /// Whether its determinant is positive.
     pub(crate) positive: bool,
     /// Whether it is to be renewed.
@@ -32,6 +34,7 @@ pub(crate) struct StepDerivatives {
 impl StepDerivatives {
     pub(crate) const NONE: Self = Self {
         columns: [[0.0; COORDINATES]; COORDINATES],
+        sizes: [[0.0; COORDINATES]; COORDINATES],
         positive: true,
         stale: true,
         least: 0,
@@ -53,6 +56,9 @@ impl StepDerivatives {
             column[..N].copy_from_slice(&inverse.solve(&unit));
             condition = larger(condition, (0..N).map(|i| (matrix[j][i] * column[i]).abs()).sum());
         }
+        for (sizes, row) in self.sizes.iter_mut().zip(matrix) {
+            sizes[..N].copy_from_slice(&mapped(row, |x| x.abs()));
+        }
         self.positive = inverse.is_positive();
         (self.stale, self.more, self.searches) = (false, 0, 0);
         (condition <= CLEAR).then_some(())
@@ -62,6 +68,12 @@ impl StepDerivatives {
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
         (self.stale, self.own) = (true, 0);
+    }
+
+    /// The size `sum_j |K_ij x_j|` of the terms of a component of `K x`.
+    #[inline(always)]
+    pub(crate) fn size_of_terms<const N: usize>(&self, i: usize, x: &[f64; N]) -> f64 {
+        self.sizes[i].iter().zip(x).map(|(size, x)| size * x.abs()).sum()
     }
 
     /// The product of the inverse with a vector.
@@ -110,8 +122,10 @@ impl StepDerivatives {
 
     /// Visits every number of it, in a fixed order.
     pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { columns, positive, stale, least, more, searches, own } = self;
-        columns.as_flattened_mut().iter_mut().for_each(&mut visit);
+        let Self { columns, sizes, positive, stale, least, more, searches, own } = self;
+        for matrix in [columns, sizes] {
+            matrix.as_flattened_mut().iter_mut().for_each(&mut visit);
+        }
         for flag in [positive, stale] {
             switch(flag, &mut visit);
         }

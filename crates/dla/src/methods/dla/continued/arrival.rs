@@ -86,8 +86,9 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
     /// rounding of the terms of a constraint on small velocities: a second correction, made without the reaction that is known, removes it.
     #[inline(always)]
     fn is_solution(&self, v: &[f64; N], p: &[f64; N], minus_mu: &[f64; M]) -> bool {
+        let rest = from_fn(|i| p[i] - self.p1[i]);
         constraint_holds(&self.a1, &self.b1, v)
-            && are_met(&from_fn(|i| p[i] - self.p1[i]), &self.a1, minus_mu, &self.p1, self.tolerance)
+            && are_met(&rest, (&self.a1, minus_mu), &self.p1, (self.mass, v), self.tolerance)
     }
 
     /// Iterates to convergence from the guess `v`. Takes `self` by value, so that nothing of it must be in memory if the first correction

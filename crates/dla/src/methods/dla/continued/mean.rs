@@ -56,7 +56,7 @@ impl<D> Dla<D> {
             return None;
         }
         let (first, at, tolerance) = (at, increment.momenta(&moved), self.newton.tolerance);
-        if size <= SMALL * large && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
+        if size <= SMALL * large && are_met(&at.residual, (&a0, &lambda), &p0, (block, &moved), tolerance) {
             return Some((FoundMean { v: moved, lambda, corrections: LEAST }, with_reaction(ends(&at), &a0, &lambda)));
         }
         let both = ends(&first);
@@ -118,7 +118,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> BlockEquations<N, 
         self.both = sums;
         // After a correction the constraint is met up to its product with the distance from the place of its rows.
         let holds = self.moved * self.size <= (SMALL * sup(v)).powi(2);
-        self.met = holds && are_met(&at.residual, a0, &self.lambda, p0, self.tolerance);
+        self.met = holds && are_met(&at.residual, (a0, &self.lambda), p0, (self.block, v), self.tolerance);
         if self.met {
             self.change = 0.0;
             return Ok([[0.0; N]]);

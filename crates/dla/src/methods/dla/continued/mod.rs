@@ -5,6 +5,7 @@ mod mean;
 
 use crate::branch;
 use crate::convergence::tolerances::SLIGHT;
+use crate::derivatives::StepDerivatives;
 use crate::dla::Dla;
 use crate::increment::Departure;
 use crate::newton::BlockEquations;
@@ -59,13 +60,14 @@ fn constraint_holds<const N: usize, const M: usize>(a: &[[f64; N]; M], b: &[f64;
     all
 }
 
-/// Whether `r + A' lambda = 0` to the round-off of momenta `p` that are among the terms of `r`.
+/// Whether `r + A' lambda = 0` to the round-off of the terms of `r`: of momenta `p`, and if they nearly cancel, of the products of the
+/// Jacobian `jacobian` with the velocity `v` that they are sums of.
 #[inline(always)]
 fn are_met<const N: usize, const M: usize>(
     r: &[f64; N],
-    a: &[[f64; N]; M],
-    lambda: &[f64; M],
+    (a, lambda): (&[[f64; N]; M], &[f64; M]),
     p: &[f64; N],
+    (jacobian, v): (&StepDerivatives, &[f64; N]),
     tolerance: f64,
 ) -> bool {
     let mut all = true;
@@ -76,7 +78,7 @@ fn are_met<const N: usize, const M: usize>(
             rest += reaction;
             size += reaction.abs();
         }
-        all &= rest.abs() <= tolerance * size;
+        all &= rest.abs() <= tolerance * size || rest.abs() <= tolerance * (size + jacobian.size_of_terms(i, v));
     }
     all
 }
