@@ -62,6 +62,8 @@ pub struct Smoothness {
     pub corners: bool,
     /// Whether the time has a part in one, so that something may happen of which no state tells.
     pub driven: bool,
+    /// Whether a function may change within a narrow interval, such as `tanh`, `exp` or a quotient.
+    pub narrow: bool,
 }
 
 impl Smoothness {
@@ -72,9 +74,10 @@ impl Smoothness {
         let (rows, b) = system.constraint(t, &q);
         let constraint = rows.iter().flatten().chain(&b);
         let all = force.iter().chain(constraint).copied().chain([system.lagrangian(t, &q, &q)]);
-        all.fold(Self { corners: false, driven: false }, |seen, x| Self {
+        all.fold(Self { corners: false, driven: false, narrow: false }, |seen, x| Self {
             corners: seen.corners || x.corner,
             driven: seen.driven || x.of_time,
+            narrow: seen.narrow || x.narrow,
         })
     }
 }

@@ -17,22 +17,38 @@ pub struct Traced {
     pub of_time: bool,
     /// Whether a function with a corner or a jump has a part in it.
     pub corner: bool,
+    /// Whether it may change with the time or the state.
+    pub varies: bool,
+    /// Whether a function of something that varies has a part in it that may change within a narrow interval, such as `tanh`, `exp` or a
+    /// quotient: all but polynomials, sines and cosines.
+    pub narrow: bool,
 }
 
 impl Traced {
     /// The time itself.
-    pub const TIME: Self = Self { zero: false, of_time: true, corner: false };
+    pub const TIME: Self = Self { zero: false, of_time: true, corner: false, varies: true, narrow: false };
     /// A coordinate or a velocity.
-    pub const STATE: Self = Self { zero: false, of_time: false, corner: false };
+    pub const STATE: Self = Self { zero: false, of_time: false, corner: false, varies: true, narrow: false };
 
     /// The result of an operation on both operands that may be nonzero.
     fn with(self, other: Self) -> Self {
-        Self { zero: false, of_time: self.of_time || other.of_time, corner: self.corner || other.corner }
+        Self {
+            zero: false,
+            of_time: self.of_time || other.of_time,
+            corner: self.corner || other.corner,
+            varies: self.varies || other.varies,
+            narrow: self.narrow || other.narrow,
+        }
     }
 
     /// A function of `self` that may be nonzero even if `self` is zero, as the cosine.
     fn changed(self) -> Self {
         Self { zero: false, ..self }
+    }
+
+    /// A function of `self` that may change within a narrow interval.
+    fn narrowed(self) -> Self {
+        Self { narrow: self.narrow || self.varies, ..self }
     }
 }
 
@@ -58,7 +74,7 @@ impl Div for Traced {
     type Output = Self;
     #[inline(never)]
     fn div(self, other: Self) -> Self {
-        if self.zero { self } else { self.with(other) }
+        if self.zero { self } else { self.with(other.narrowed()) }
     }
 }
 impl Neg for Traced {
@@ -94,29 +110,29 @@ derived_operators!([] Traced);
 impl Scalar for Traced {
     #[inline]
     fn constant(x: f64) -> Self {
-        Self { zero: x == 0.0, of_time: false, corner: false }
+        Self { zero: x == 0.0, of_time: false, corner: false, varies: false, narrow: false }
     }
     #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         (self, self.changed())
     }
     fn exp(self) -> Self {
-        self.changed()
+        self.narrowed().changed()
     }
     fn ln(self) -> Self {
-        self.changed()
+        self.narrowed().changed()
     }
     fn sqrt(self) -> Self {
-        self
+        self.narrowed()
     }
     fn powi(self, n: i32) -> Self {
-        if n > 0 { self } else { self.changed() }
+        if n > 0 { self } else { self.narrowed().changed() }
     }
     fn recip(self) -> Self {
-        self.changed()
+        self.narrowed().changed()
     }
     fn apply<F: ScalarFunction>(self, _f: F) -> Self {
-        Self { corner: self.corner || !F::SMOOTH, ..self.changed() }
+        Self { corner: self.corner || !F::SMOOTH, ..self.narrowed().changed() }
     }
     #[inline(never)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
@@ -125,11 +141,11 @@ impl Scalar for Traced {
     }
     #[inline(never)]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
-        components.iter().fold(Self::zero(), |sum, x| sum + *x)
+        components.iter().fold(Self::zero(), |sum, x| sum + x.narrowed())
     }
     #[inline(never)]
     fn atan2(self, x: Self) -> Self {
-        self.with(x)
+        self.with(x).narrowed()
     }
     /// Whether it is known to be zero.
     #[inline]
@@ -162,6 +178,7 @@ mod tests {
         let made = terms(Traced::TIME, Traced::STATE);
         assert_eq!(made.map(|x| x.of_time), [false, false, true, false, false, true, true, false]);
         assert_eq!(made.map(|x| x.corner), [false, false, true, false, false, false, false, true]);
+        assert_eq!(made.map(|x| x.narrow), [false, false, false, false, false, true, false, true]);
         assert_eq!(made.map(|x| x.zero), [false, false, false, true, true, false, false, false]);
         // What is said to be zero is, and what is said not to change with time does not; of the others some do.
         for q in [-1.3, 0.4] {

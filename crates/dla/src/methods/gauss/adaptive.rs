@@ -15,7 +15,8 @@ use std::ops::ControlFlow;
 ///
 /// The highest Legendre coefficient of the slopes of a step shows how smooth the motion is along it: if coefficients fall off evenly, its
 /// power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. The defect of the equations at other
-/// points is a second estimate, which detects corners, jumps, pulses and what is as steep.
+/// points is a second estimate, which detects corners, jumps, pulses and what is as steep, unless all functions of the system are
+/// polynomials, sines and cosines of the state.
 /// Steps are powers of the fourth root of two (s), so that a few fixed matrices continue the polynomial of one step into the next. Stages
 /// are iterated to a fraction of the tolerance, not to rounding: the method is on the constraint by construction, but it is symmetric to
 /// the tolerance only, and does not keep what [`Gauss`] keeps over long runs.
@@ -248,7 +249,7 @@ fn first<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, t: f64, w
     let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
-    let Smoothness { corners, driven } = system.smoothness();
+    let Smoothness { corners, driven, .. } = system.smoothness();
     let (part, still) = if corners || driven { (0.2, whole.abs() / 32.0) } else { (0.5, whole.abs()) };
     let step = if turning > 0.0 { (part / turning).min(whole.abs()) } else { still };
     quarters_of(step).clamp(-4000, 4000)

@@ -9,8 +9,9 @@ use lagrangian::{Smoothness, from_fn};
 /// smooth function that is as steep, so the trust depends on the kind of functions that the system has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Doubt {
-    /// A step is examined again if its coefficients show an error above this (tolerances).
-    above: f64,
+    /// A step is examined again if its coefficients show an error above this (tolerances). `None` if the functions of the system are
+    /// polynomials, sines and cosines of the state: the coefficients alone then determine its steps.
+    above: Option<f64>,
     /// Whether a step that is much longer than the last is examined in any case: something may happen of which no state tells.
     of_grown: bool,
 }
@@ -68,8 +69,9 @@ type Pair<const N: usize> = [[f64; N]; 2];
 
 impl Doubt {
     /// The doubt for functions of this smoothness.
-    pub(super) fn of(Smoothness { corners, driven }: Smoothness) -> Self {
-        Self { above: if corners { MOST } else { 60.0 * MOST }, of_grown: corners || driven }
+    pub(super) fn of(Smoothness { corners, driven, narrow }: Smoothness) -> Self {
+        let above = if corners { Some(MOST) } else { (driven || narrow).then_some(60.0 * MOST) };
+        Self { above, of_grown: corners || driven }
     }
 
     /// The factor by which the error of a step is too large; `None` if it is not. A step that has `grown` is much longer than the last, so
@@ -85,7 +87,7 @@ impl Doubt {
         attempt: &Attempt<'_, N>,
         grown: bool,
     ) -> Option<f64> {
-        let error = self.error(system, attempt, grown);
+        let error = self.error(system, self.above?, attempt, grown);
         (error > MOST).then(|| error / MOST)
     }
 
@@ -93,6 +95,7 @@ impl Doubt {
     fn error<const N: usize, const M: usize>(
         self,
         system: &dyn Mechanics<N, M>,
+        above: f64,
         of: &Attempt<'_, N>,
         grown: bool,
     ) -> f64 {
@@ -101,7 +104,7 @@ impl Doubt {
         let (mut error, mut doubtful) = (0.0, grown && self.of_grown);
         for &[last, before] in tail.iter().flatten() {
             let even = (last / before).min(1.0);
-            doubtful |= last > SMALL && last * even * even * even > self.above;
+            doubtful |= last > SMALL && last * even * even * even > above;
         }
         let between = of.rule.between();
         for (at, (end, values)) in [t, t + h].into_iter().zip(of.ends.iter().zip(&between.ends)) {
