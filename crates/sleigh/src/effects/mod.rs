@@ -1,6 +1,6 @@
 //! What may act on a sleigh: each effect adds to the Lagrangian or to the forces, on the coordinates of the body.
 //!
-//! They compose as tuples or lists in [`lagrangian::With`], on any [`SleighBody`](crate::SleighBody). An [`AnyEffect`] is one of them.
+//! They compose as tuples or lists in [`lagrangian::With`], on any [`SleighBody`]. An [`AnyEffect`] is one of them.
 
 mod brakes;
 mod drives;
