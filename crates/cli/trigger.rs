@@ -146,12 +146,12 @@ impl Events {
 }
 
 /// The number of reasons to doubt that all crossings were found.
-pub(crate) fn doubts(Close { count, unseen, .. }: Close) -> u64 {
-    count + unseen
+pub(crate) fn doubts(Close { count, incomplete, .. }: Close) -> u64 {
+    count + incomplete
 }
 
 /// The message that crossings may have been missed, with the reasons.
-pub(crate) fn in_doubt(Close { count, spacing, nearest, unseen }: &Close) -> String {
+pub(crate) fn in_doubt(Close { count, spacing, nearest, incomplete }: &Close) -> String {
     let mut reasons = Vec::new();
     if *count > 0 {
         let (follow, as_little) =
@@ -160,10 +160,10 @@ pub(crate) fn in_doubt(Close { count, spacing, nearest, unseen }: &Close) -> Str
             "{count} {follow} another by {as_little} {nearest:.2e} s, and samples are up to {spacing:.2e} s apart"
         ));
     }
-    if *unseen > 0 {
-        let steps = if *unseen == 1 { "step" } else { "steps" };
+    if *incomplete > 0 {
+        let steps = if *incomplete == 1 { "step" } else { "steps" };
         reasons.push(format!(
-            "in {unseen} {steps} a quantity has no value at a sample, or changes more quickly than any samples show"
+            "in {incomplete} {steps} a quantity has no value at a sample, or changes more quickly than any samples show"
         ));
     }
     format!("{}, so other crossings may have been missed", reasons.join("; "))

@@ -81,8 +81,8 @@ pub(crate) struct Progressing {
     meter: Meter,
     seconds: f64,
     crossings: Vec<SavedCrossing>,
-    /// See [`Close::unseen`].
-    unseen: u64,
+    /// See [`Close::incomplete`].
+    incomplete: u64,
 }
 
 /// The part of a run that a checkpoint has, with its work.
@@ -147,7 +147,7 @@ impl Run<'_> {
                 meter: Meter::new(request, method),
                 seconds: 0.0,
                 crossings: Vec::new(),
-                unseen: 0,
+                incomplete: 0,
             },
         };
         // An event may end a run before it is saved.
@@ -181,7 +181,7 @@ impl Run<'_> {
                     let outcome =
                         substepped_part(piece, &mut *integrator, limits, &times, chunk.clone(), state, &mut watch);
                     run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
-                    run.unseen += watch.unseen();
+                    run.incomplete += watch.incomplete();
                     let ended = watch.ended().is_some();
                     done = outcome?;
                     if ended {
@@ -214,7 +214,7 @@ impl Run<'_> {
         let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
         let looked = run.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
         let close = close_crossings(looked, |event| events.get(event).is_some_and(Event::leaves_some_out));
-        let close = Close::with_unseen(close, run.unseen);
+        let close = Close::with_incomplete(close, run.incomplete);
         Made { record, crossings: run.crossings, close }
     }
 }
@@ -247,7 +247,7 @@ impl Progressing {
         self.meter.save(&mut checkpoint);
         let crossings: Vec<f64> = self.crossings.iter().flat_map(SavedCrossing::numbers).collect();
         checkpoint.put("crossings", &crossings);
-        checkpoint.put_counts("unseen", &[self.unseen]);
+        checkpoint.put_counts("incomplete", &[self.incomplete]);
         checkpoint
     }
 
@@ -259,8 +259,8 @@ impl Progressing {
         let meter = Meter::load(checkpoint, meter, made, t, &state, work.clone())?;
         let crossings = SavedCrossing::all(&checkpoint.list("crossings")?, state.q().len());
         // A checkpoint of another program may lack this count.
-        let [unseen] = checkpoint.counts("unseen").unwrap_or([0]);
-        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings, unseen }, work))
+        let [incomplete] = checkpoint.counts("incomplete").unwrap_or([0]);
+        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings, incomplete }, work))
     }
 }
 

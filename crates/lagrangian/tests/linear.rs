@@ -269,8 +269,8 @@ proptest! {
         }
 
         // A part across both shows, however small it is beside the rounding of the rest.
-        let unseen = space.kernel();
-        let across: [f64; 4] = from_fn(|i| (unseen[0][i] + unseen[1][i]) * unit[i]);
+        let kernel = space.kernel();
+        let across: [f64; 4] = from_fn(|i| (kernel[0][i] + kernel[1][i]) * unit[i]);
         let length = size(&across);
         let lifted = scaled([a[0], a[1], from_fn(|i| third[i] + 1e-9 * across[i] / length)]);
         prop_assert_eq!(RowSpace::new(&lifted, &mass, tolerance).rank(), 3);

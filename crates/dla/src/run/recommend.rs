@@ -67,7 +67,7 @@ const ROUNDING: f64 = 1e-7;
 /// Maximum number of steps of a trial.
 const MOST: u64 = 1 << 26;
 /// Maximum number of steps of a trial, unless shorter steps are seen to help.
-const UNSEEN: u64 = 1 << 22;
+const MOST_WITHOUT_GAIN: u64 = 1 << 22;
 /// Runs with more steps than this show when a motion leaves the range of numbers, and the best error of numbers that lack digits for the
 /// tolerance.
 const FINE: u64 = 1 << 16;
@@ -168,7 +168,7 @@ fn reference(
                     let hopeless = slow && slowly;
                     slowly = slow;
                     let coarse = f64::EPSILON * size > tolerance && change < 0.5 * size;
-                    if hopeless || (coarse && steps >= FINE) || (steps >= UNSEEN && change > 0.5 * largest) {
+                    if hopeless || (coarse && steps >= FINE) || (steps >= MOST_WITHOUT_GAIN && change > 0.5 * largest) {
                         break;
                     }
                 } else {
@@ -182,7 +182,7 @@ fn reference(
                 trials.clear();
                 (change, extrapolated) = (f64::INFINITY, None);
                 let hopeless = matches!(error.source, StepError::Unsupported { .. } | StepError::TooLarge { .. });
-                let costly = error.step > UNSEEN / 2;
+                let costly = error.step > MOST_WITHOUT_GAIN / 2;
                 if hopeless || costly || runaway.sees(&error, duration / steps as f64, FINE) {
                     break;
                 }

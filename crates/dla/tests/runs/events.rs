@@ -324,7 +324,7 @@ fn several_events_within_one_step_have_its_direction() {
 #[test]
 fn crossings_are_close_by_the_samples_between_them() {
     let at = |times: &'static [f64]| times.iter().map(|t| (1, *t, 0.25));
-    let pair = |count, spacing, nearest| Some(Close { count, spacing, nearest, unseen: 0 });
+    let pair = |count, spacing, nearest| Some(Close { count, spacing, nearest, incomplete: 0 });
     assert_eq!(close_crossings(at(&[0.0, 0.5, 1.0]), |_| false), None);
     assert_eq!(close_crossings(at(&[0.0, 0.4, 1.0, 1.125]), |_| false), pair(2, 0.25, 0.125));
     // Backward in time.
@@ -363,7 +363,7 @@ fn a_fast_sine_is_found_or_in_doubt() {
         assert_eq!(close, None, "{frequency} {samples}");
     }
     let (_, close) = found(1e6, 4);
-    assert_eq!(close.map(|close| close.unseen), Some(4));
+    assert_eq!(close.map(|close| close.incomplete), Some(4));
 }
 
 /// What hardly changes is no reason for doubt, whatever its rounding does, nor is a corner or a jump.
@@ -380,7 +380,7 @@ fn what_hardly_changes_is_not_in_doubt() {
     let mut watch = Watch::new(&OWN, &events, ());
     let schedule = Schedule { t0: 0.0, step: 0.25, steps: 16 };
     run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
-    assert_eq!(watch.close().map_or(0, |close| close.unseen), 0);
+    assert_eq!(watch.close().map_or(0, |close| close.incomplete), 0);
     let counts = [1, 2, 3].map(|event| watch.crossings().iter().filter(|crossing| crossing.event == event).count());
     assert_eq!(counts, [1, 2, 1]);
 }
@@ -388,13 +388,13 @@ fn what_hardly_changes_is_not_in_doubt() {
 /// An event without a value at a sample is in doubt, and so is a method that cannot be asked between nodes; one with values at all is not.
 #[test]
 fn a_sample_without_a_value_is_in_doubt() {
-    for (root, unseen) in [(0.3, 2), (-1.0, 0)] {
+    for (root, incomplete) in [(0.3, 2), (-1.0, 0)] {
         // No number before the root, and a crossing a quarter beyond it.
         let events = [Event::new("root", move |t: f64, _, _| (t - root).sqrt() - 0.5)];
         let mut watch = Watch::new(&OWN, &events, ());
         let schedule = Schedule { t0: 0.0, step: 0.25, steps: 4 };
         run_own(&system(), Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
-        assert_eq!(watch.close().map_or(0, |close| close.unseen), unseen, "{root}");
+        assert_eq!(watch.close().map_or(0, |close| close.incomplete), incomplete, "{root}");
         assert_eq!(watch.crossings().len(), usize::from(root > 0.0), "{root}");
     }
 }

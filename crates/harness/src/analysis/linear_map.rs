@@ -20,10 +20,10 @@ impl AllowedDirections {
         let (n, count) = (rows.ncols(), shape.len());
         let others: Vec<usize> = (0..n).filter(|i| !shape.contains(i)).collect();
         let (of_others, of_shape) = (rows.select_columns(&others), rows.select_columns(shape));
-        let open = Split::by(&of_others, DEPENDENT)?.unseen;
+        let open = Split::by(&of_others, DEPENDENT)?.kernel;
         // The combinations of constraints that the remaining coordinates cannot make up for.
-        let left = Split::by(&of_others.transpose(), DEPENDENT)?.unseen;
-        let kept = Split::by(&(left.transpose() * &of_shape), DEPENDENT)?.unseen;
+        let left = Split::by(&of_others.transpose(), DEPENDENT)?.kernel;
+        let kept = Split::by(&(left.transpose() * &of_shape), DEPENDENT)?.kernel;
         let k = kept.ncols();
         let mut along = DMatrix::zeros(count + free, k + free);
         along.view_mut((0, 0), (count, k)).copy_from(&kept);
@@ -63,12 +63,12 @@ pub(super) fn with_family(
     let (norm, count) = (matrix.norm(), matrix.ncols());
     let (mut rest, mut family) = (matrix, None);
     loop {
-        let Split { seen, unseen } = Split::by(&rest, rounding.max(UNSEEN * norm))?;
-        family = family.or(Some(unseen.ncols()));
-        if unseen.ncols() == 0 {
+        let Split { row_space, kernel } = Split::by(&rest, rounding.max(NEGLIGIBLE * norm))?;
+        family = family.or(Some(kernel.ncols()));
+        if kernel.ncols() == 0 {
             break;
         }
-        rest = seen.tr_mul(&rest) * &seen;
+        rest = row_space.tr_mul(&rest) * &row_space;
     }
     let neutral = count - rest.ncols();
     let rest = &rest + DMatrix::identity(rest.ncols(), rest.ncols()) * about;
@@ -76,4 +76,4 @@ pub(super) fn with_family(
 }
 
 /// A direction with a singular value below this, relative to the norm of the matrix, counts as taken to zero.
-const UNSEEN: f64 = 1e-10;
+const NEGLIGIBLE: f64 = 1e-10;

@@ -4,11 +4,11 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// A singular value of rows of the length one that is below this is none: rows that depend on one another.
 pub(super) const DEPENDENT: f64 = 1e-10;
 
-/// The part of a space that rows see, and the part that they do not, each as orthonormal columns.
+/// The row space of a matrix, and its kernel, each as orthonormal columns.
 #[derive(Debug, Clone)]
 pub(super) struct Split {
-    pub(super) seen: DMatrix<f64>,
-    pub(super) unseen: DMatrix<f64>,
+    pub(super) row_space: DMatrix<f64>,
+    pub(super) kernel: DMatrix<f64>,
 }
 
 impl Split {
@@ -16,18 +16,18 @@ impl Split {
     pub(super) fn by(rows: &DMatrix<f64>, floor: f64) -> Option<Self> {
         let n = rows.ncols();
         if n == 0 {
-            return Some(Self { seen: DMatrix::zeros(0, 0), unseen: DMatrix::zeros(0, 0) });
+            return Some(Self { row_space: DMatrix::zeros(0, 0), kernel: DMatrix::zeros(0, 0) });
         }
         // A square matrix has all right vectors.
         let square = rows.clone().resize(rows.nrows().max(n), n, 0.0);
         let svd = SVD::try_new(square, false, true, f64::EPSILON, 10_000)?;
         let (vectors, sizes) = (svd.v_t?, svd.singular_values);
-        let of = |seen: bool| -> Vec<DVector<f64>> {
-            let chosen = (0..n).filter(|&k| (sizes[k] > floor) == seen);
+        let of = |above: bool| -> Vec<DVector<f64>> {
+            let chosen = (0..n).filter(|&k| (sizes[k] > floor) == above);
             chosen.map(|k| vectors.row(k).transpose()).collect()
         };
         let columns = |of: &[DVector<f64>]| DMatrix::from_fn(n, of.len(), |i, j| of[j][i]);
-        Some(Self { seen: columns(&of(true)), unseen: columns(&of(false)) })
+        Some(Self { row_space: columns(&of(true)), kernel: columns(&of(false)) })
     }
 }
 

@@ -75,14 +75,14 @@ impl<'a> Steps<'a> {
     /// Orthonormal directions across the constraints on positions, in the coordinates; `None` if there are no such constraints.
     fn normals(&self, t: f64, q: &[f64]) -> Option<DMatrix<f64>> {
         let (_, rows) = positions(self.system, self.variables.coordinates, t, q);
-        if rows.nrows() == 0 { None } else { Some(Split::by(&rows, DEPENDENT)?.seen) }
+        if rows.nrows() == 0 { None } else { Some(Split::by(&rows, DEPENDENT)?.row_space) }
     }
 
     /// Orthonormal directions along the constraints on positions, in the variables; `None` if there are no such constraints.
     fn along(&self, t: f64, q: &[f64]) -> Option<DMatrix<f64>> {
         let normals = self.normals(t, q)?;
         let rows = normals.transpose().resize_horizontally(self.variables.count(), 0.0);
-        Some(Split::by(&rows, DEPENDENT)?.unseen)
+        Some(Split::by(&rows, DEPENDENT)?.kernel)
     }
 
     /// Restricts a matrix to map the directions at the last node to the directions at a place, which becomes the last node.

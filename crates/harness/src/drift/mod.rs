@@ -129,11 +129,11 @@ impl Drift {
         let drift = Self::of(blocks);
         let runs_away = || batches::runs_away(blocks.full()).is_some_and(|largest| largest > energies.start());
         let largest = blocks.full().iter().map(|block| block.min.abs().max(block.max.abs())).fold(0.0, f64::max);
-        let unseen = largest <= OF_ROUNDING * f64::EPSILON * energies.largest();
+        let of_rounding = largest <= OF_ROUNDING * f64::EPSILON * energies.largest();
         let verdict = match drift.verdict {
             _ if energies.exceeded() || energies.runs_off() || runs_away() => DriftVerdict::Diverged,
             DriftVerdict::Bounded if energies.jump().is_some() => DriftVerdict::Undecided,
-            DriftVerdict::LinearDrift | DriftVerdict::RandomWalk if unseen => DriftVerdict::RoundOff,
+            DriftVerdict::LinearDrift | DriftVerdict::RandomWalk if of_rounding => DriftVerdict::RoundOff,
             verdict => verdict,
         };
         Self { verdict, ..drift }

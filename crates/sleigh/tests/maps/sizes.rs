@@ -115,7 +115,7 @@ fn digits_belong_to_one_spin() {
     let (ten, fifty) = (f64::from_bits(10), f64::from_bits(50));
     assert_eq!(spin(ten, 0.05, &mut memory), ten);
     assert_eq!(spin(fifty, 0.05, &mut memory), spin(fifty, 0.05, &mut Memory::default()));
-    // Ten and three fifths of one, that went unseen: a third step makes eleven of it.
+    // Ten and three fifths of one, that was not detected: a third step makes eleven of it.
     let mut memory = Memory::EMPTY;
     let grown = (0..3).fold(ten, |omega, _| spin(omega, 0.05, &mut memory));
     assert_eq!(grown, f64::from_bits(11));

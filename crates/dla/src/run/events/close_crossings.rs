@@ -9,18 +9,18 @@ pub struct Close {
     pub nearest: f64,
     /// Number of times that a step, or one that a method makes of its own, was not seen as a whole: an event had no value at a sample, a
     /// shorter step had no solution, or the event changes more quickly than the samples show.
-    pub unseen: u64,
+    pub incomplete: u64,
 }
 
 impl Close {
-    /// Adds `unseen` steps that were not seen as a whole; `None` if there is no doubt.
+    /// Adds `incomplete` steps that were not seen as a whole; `None` if there is no doubt.
     #[must_use]
-    pub fn with_unseen(close: Option<Self>, unseen: u64) -> Option<Self> {
-        match (close, unseen) {
+    pub fn with_incomplete(close: Option<Self>, incomplete: u64) -> Option<Self> {
+        match (close, incomplete) {
             (close, 0) => close,
             (close, more) => {
                 let close = close.unwrap_or_default();
-                Some(Self { unseen: close.unseen + more, ..close })
+                Some(Self { incomplete: close.incomplete + more, ..close })
             }
         }
     }
@@ -34,7 +34,7 @@ impl Close {
             _ => self.nearest.min(other.nearest),
         };
         let spacing = self.spacing.max(other.spacing);
-        Self { count: self.count + other.count, spacing, nearest, unseen: self.unseen + other.unseen }
+        Self { count: self.count + other.count, spacing, nearest, incomplete: self.incomplete + other.incomplete }
     }
 }
 
@@ -60,7 +60,7 @@ pub fn close_crossings(
             let (factor, widest, apart) =
                 (if one_way(event) { 4.0 } else { 2.0 }, f64::max(spacing, other), (t - before).abs());
             if f64::min(spacing, other) > 0.0 && apart < factor * widest {
-                let one = Close { count: 1, spacing: widest, nearest: apart, unseen: 0 };
+                let one = Close { count: 1, spacing: widest, nearest: apart, incomplete: 0 };
                 found = Some(found.map_or(one, |found| found.and(one)));
             }
         }

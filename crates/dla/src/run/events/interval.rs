@@ -45,7 +45,7 @@ impl EventInterval<'_> {
         let parts = samples.max(1);
         let at = |j: i64| j as f64 / f64::from(parts);
         let states: Vec<_> = (-1..=i64::from(parts) + 1).map(|j| (at(j), self.state(at(j)))).collect();
-        let (length, mut found, mut unseen) = (self.h.abs(), Vec::new(), 0);
+        let (length, mut found, mut incomplete) = (self.h.abs(), Vec::new(), 0);
         for (index, event) in events.iter().enumerate() {
             let value = |at: f64| self.state(at).map_or(f64::NAN, |state| event.value(self.time(at), &state));
             let at_sample = |(at, state): &(f64, Option<AnyState>)| {
@@ -59,14 +59,14 @@ impl EventInterval<'_> {
                 Between::Told | Between::Untold => (true, parts, known),
             };
             let counts = |rising| event.counts(rising);
-            let Zeros { zeros, unseen: missing } = zeros_by(&known, exact, tolerance / length, counts, value);
-            unseen += u64::from(missing || untold);
+            let Zeros { zeros, incomplete: missing } = zeros_by(&known, exact, tolerance / length, counts, value);
+            incomplete += u64::from(missing || untold);
             for Zero { at, within, rising } in zeros {
                 let Some(state) = self.state(at) else { continue };
                 let (t, within, spacing) = (self.time(at), within * length, length / f64::from(parts));
                 found.push((at, Crossing { event: index, k, t, within, spacing, rising, state }));
             }
         }
-        (in_order(found).collect(), unseen)
+        (in_order(found).collect(), incomplete)
     }
 }

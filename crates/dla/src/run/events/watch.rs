@@ -38,7 +38,7 @@ pub struct Watch<'a, Inner> {
     /// Whether no interval has been searched since the start of the run.
     at_start: bool,
     /// Number of times that an event was not seen as a whole in a step.
-    unseen: u64,
+    incomplete: u64,
     /// The memory of the method's own steps; empty if it makes none.
     memory: Vec<f64>,
     /// Whether the parts of the step have been searched already.
@@ -59,7 +59,7 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
             inner,
             before: None,
             at_start: false,
-            unseen: 0,
+            incomplete: 0,
             memory: Vec::new(),
             in_parts: false,
             crossings: Vec::new(),
@@ -91,17 +91,17 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
     }
 
     /// Why crossings may have been missed: crossings so close to one another that others may be between them (see [`close_crossings`]), and
-    /// steps that were not [seen](Self::unseen) as a whole.
+    /// steps that were not [seen](Self::incomplete) as a whole.
     #[must_use]
     pub fn close(&self) -> Option<Close> {
         let looked = self.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
-        Close::with_unseen(close_crossings(looked, |event| self.events[event].leaves_some_out()), self.unseen)
+        Close::with_incomplete(close_crossings(looked, |event| self.events[event].leaves_some_out()), self.incomplete)
     }
 
-    /// Number of times that an event was not seen as a whole in a step (see [`Close::unseen`]).
+    /// Number of times that an event was not seen as a whole in a step (see [`Close::incomplete`]).
     #[must_use]
-    pub fn unseen(&self) -> u64 {
-        self.unseen
+    pub fn incomplete(&self) -> u64 {
+        self.incomplete
     }
 
     /// Looks for events on the way to a node. If an event ends the run, shows the inner observer the last node, and returns `Break`.
@@ -140,7 +140,7 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
                 self.look_between(node, (t0, &before), (t, state))
             });
             // If the own steps cannot be made again, the rest is searched as one.
-            self.unseen += u64::from(made.is_err());
+            self.incomplete += u64::from(made.is_err());
             self.memory = memory;
         }
         if self.ended.is_none() {
@@ -156,9 +156,9 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         (t, end): (f64, &AnyState),
     ) -> ControlFlow<()> {
         let interval = EventInterval { system: node.system, method: self.method, t0, h: t - t0, start, end };
-        let (mut found, unseen) =
+        let (mut found, incomplete) =
             interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
-        self.unseen += unseen;
+        self.incomplete += incomplete;
         if std::mem::take(&mut self.at_start) {
             let rounding = AT_START * f64::EPSILON * f64::max(t0.abs(), (t - t0).abs());
             found.retain(|crossing| (crossing.t - t0).abs() > rounding);

@@ -18,7 +18,7 @@ pub struct Zeros {
     /// In no order.
     pub zeros: Vec<Zero>,
     /// Whether the function has no value at a known point of the step, so that others may have been missed.
-    pub unseen: bool,
+    pub incomplete: bool,
 }
 
 /// The crossings of a function within a step, at parts of it from 0 to 1. `known` has pairs of a part and a value in order, a little beyond
@@ -49,12 +49,12 @@ fn searched(
 ) -> Zeros {
     let points = known.iter().map(|(at, value)| RootPoint { at: *at, value: *value });
     let (points, missing): (Vec<RootPoint>, Vec<RootPoint>) = points.partition(|point| !point.value.is_nan());
-    let mut unseen = missing.iter().any(|point| (0.0..=1.0).contains(&point.at));
+    let mut incomplete = missing.iter().any(|point| (0.0..=1.0).contains(&point.at));
     let mut zeros = Vec::new();
     for (mut from, mut to) in isolate(&points, &mut *f) {
         if !exact {
             let Some(bracket) = truly([from.at, to.at], f) else {
-                unseen = true;
+                incomplete = true;
                 continue;
             };
             (from, to) = bracket;
@@ -64,7 +64,7 @@ fn searched(
             zeros.push(Zero { at, within, rising: from.value < 0.0 });
         }
     }
-    Zeros { zeros, unseen }
+    Zeros { zeros, incomplete }
 }
 
 /// The points of a change of sign of the function itself, at two places or half their distance beyond them; `None` if there is no change of
