@@ -114,7 +114,7 @@ impl<const N: usize, const M: usize> BlockEquations<N, 1> for Here<'_, N, M> {
             return Ok([d]);
         }
         let p = self.known.take().unwrap_or_else(|| self.system.momentum(self.t1, &self.q1, v));
-        self.met = self.is_solution(v, &p, &self.minus_mu, self.tolerance);
+        self.met = self.is_solution(v, &p, &self.minus_mu, 0.5 * self.tolerance);
         if self.met {
             return Ok([[0.0; N]]);
         }
