@@ -65,6 +65,26 @@ fn smooth_motions_are_not_refused_at_length() {
     ends(&LONG);
 }
 
+/// Where a train rests all corrections are the rounding of large reactions, and may grow by chance: it stays where it is.
+fn rests(lines: &[&str]) {
+    for line in lines {
+        let end = run(&format!("train-rests.toml --method {line}"));
+        assert!((end["final"]["x"].as_f64().unwrap() - 0.002_500_649_704_480_474).abs() < 1e-14, "{line}: {end}");
+        assert!(end["final"]["speed"].as_f64().unwrap().abs() < 1e-15, "{line}: {end}");
+    }
+}
+
+#[test]
+fn trains_at_rest_stay() {
+    rests(&["dla8 --duration 6.5"]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn trains_at_rest_stay_at_length() {
+    rests(&["dla --duration 500", "dla4 --duration 500", "dla6 --duration 500", "dla8 --duration 500"]);
+}
+
 /// A coordinate of 1e-14 kg holds its constraint as any other does.
 #[test]
 fn light_coordinates_hold_their_constraint() {
