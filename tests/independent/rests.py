@@ -11,7 +11,7 @@ from drawn import Draw
 from mechanics import complex_step
 from program import Findings, Program, arguments
 
-METHODS = ("dla", "rk4-reduced")
+METHODS = ("dla", "rk4")
 STEP, STARTS, NEAR = 0.02, 6, 1.0
 # The reason of methods that do not differentiate their steps under constraints on positions.
 BY_KIND = "constraints on positions"
@@ -94,14 +94,14 @@ def check(program, findings, draw, file, where, found):
 def limits(findings, positions, where, found, right, scale):
     """Eigenvalues of the step are exp(h lambda) to the order of the method, and no limit stands where steps resolve the motion."""
     h = min(STEP, 0.1 / scale)
-    if found["map"] is None and BY_KIND in found["map_failure"] and positions and where["method"] == "rk4-reduced":
+    if found["map"] is None and BY_KIND in found["map_failure"] and positions and where["method"] == "rk4":
         return findings.count("no map, by kind")
     if found["map"] is None or h < STEP:
         return findings.fail("no map", **where, scale=scale) if found["map"] is None and h == STEP else None
     shown = np.array([complex(value["re"], value["im"]) for value in found["map"]])
     if not alike(shown, np.exp(h * right), (h * scale) ** 3 / 1e-8, roots=False):
         findings.fail("map", **where, shown=pairs(shown), right=pairs(np.exp(h * right)))
-    limit, right_limit = found["step_limit"], runge_kutta_limit(right) if where["method"] == "rk4-reduced" and found["stable"] else None
+    limit, right_limit = found["step_limit"], runge_kutta_limit(right) if where["method"] == "rk4" and found["stable"] else None
     told = {"limit": limit, "fastest": scale, "reason": found["step_limit_reason"]}
     if limit is not None and limit * scale < 0.3:
         findings.fail("false limit", **where, **told)

@@ -1,4 +1,5 @@
 use super::{STAGES, moving, shifted, weighted};
+use crate::dropping::even_accelerations;
 use crate::{Mechanics, OneStep, StackUse, State, StepError, StepReport, on_branch};
 use lagrangian::{Saddle, from_fn};
 
@@ -34,6 +35,7 @@ fn increments<const N: usize, const M: usize>(
         accelerations[i] = system.motion(t + stage * h, &q, &v).map_err(StepError::Motion)?.acceleration;
     }
     moving(system, t, q0, &velocities)?;
+    even_accelerations(system, (t, h), state, &accelerations)?;
     Ok((weighted(h, &velocities), weighted(h, &accelerations)))
 }
 

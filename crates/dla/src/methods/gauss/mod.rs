@@ -231,16 +231,17 @@ impl Gauss {
 
     /// Whether slopes are smooth along the step: a polynomial of the degree of the method follows them.
     fn resolves<const N: usize>(&self, slopes: &[[f64; N]; 8]) -> bool {
-        /// Largest value of the highest Legendre coefficient, relative to the slope, of a motion that is resolved; its power
-        /// `2 s / (s - 1)` is about the error of a step.
-        const ROUGH: f64 = 0.05;
+        /// Largest relative error of a step whose motion is resolved: about the power `2 s / (s - 1)` of the highest Legendre coefficient
+        /// relative to the slope. A single stage tells no error.
+        const ERROR: f64 = 1.1e-3;
         /// Least unit for a slope, relative to the largest slope.
         const SMALL: f64 = 1e-3;
         let count = self.stages();
+        let rough = ERROR.powf((count as f64 - 1.0) / (2.0 * count as f64));
         let size = |i: usize| slopes[..count].iter().fold(0.0, |most, slope| larger(most, slope[i]));
         let all = (0..N).map(size).fold(0.0, larger);
         let highest = self.sum(1.0, |j| self.rule.highest[j], slopes);
-        (0..N).all(|i| highest[i].abs() <= ROUGH * larger(size(i), SMALL * all))
+        (0..N).all(|i| highest[i].abs() < rough * larger(size(i), SMALL * all) || all == 0.0)
     }
 
     /// Iterates the slopes of the stages, with secants or without, until they change by round-off only; returns the number of iterations.

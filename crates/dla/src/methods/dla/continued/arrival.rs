@@ -1,5 +1,6 @@
 use super::{FoundMean, are_met, constraint_holds, searched, sup, with_reaction};
 use crate::convergence::CorrectionKind;
+use crate::convergence::tolerances::SLIGHT;
 use crate::derivatives::{LEAST, StepDerivatives};
 use crate::dla::Dla;
 use crate::newton::BlockEquations;
@@ -43,7 +44,7 @@ impl<D> Dla<D> {
             return None;
         }
         let p = system.momentum(t1, q1, &v);
-        if here.is_solution(&v, &p, &minus_mu) {
+        if here.is_solution(&v, &p, &minus_mu, SLIGHT) {
             return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: LEAST });
         }
         (here.first, here.known, here.minus_mu) = (Some(d), Some(p), minus_mu);
@@ -85,9 +86,9 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
     /// Whether the velocity `v`, which has the momenta `p`, is the solution with `mu`. The rounding of a large reaction may be more than the
     /// rounding of the terms of a constraint on small velocities: a second correction, made without the reaction that is known, removes it.
     #[inline(always)]
-    fn is_solution(&self, v: &[f64; N], p: &[f64; N], minus_mu: &[f64; M]) -> bool {
+    fn is_solution(&self, v: &[f64; N], p: &[f64; N], minus_mu: &[f64; M], within: f64) -> bool {
         let rest = from_fn(|i| p[i] - self.p1[i]);
-        constraint_holds(&self.a1, &self.b1, v)
+        constraint_holds((&self.a1, &self.b1), v, within)
             && are_met(&rest, (&self.a1, minus_mu), &self.p1, (self.mass, v), self.tolerance)
     }
 
@@ -98,7 +99,7 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
         let mut all = [v];
         let corrections = searched(self.tolerance, &mut self, &mut all)?;
         let [v] = all;
-        constraint_holds(&self.a1, &self.b1, &v).then(|| FoundMean {
+        constraint_holds((&self.a1, &self.b1), &v, SLIGHT).then(|| FoundMean {
             v,
             lambda: mapped(&self.minus_mu, |m| -m),
             corrections,
@@ -113,7 +114,7 @@ impl<const N: usize, const M: usize> BlockEquations<N, 1> for Here<'_, N, M> {
             return Ok([d]);
         }
         let p = self.known.take().unwrap_or_else(|| self.system.momentum(self.t1, &self.q1, v));
-        self.met = self.is_solution(v, &p, &self.minus_mu);
+        self.met = self.is_solution(v, &p, &self.minus_mu, 0.5 * self.tolerance);
         if self.met {
             return Ok([[0.0; N]]);
         }

@@ -4,7 +4,6 @@ mod arrival;
 mod mean;
 
 use crate::branch;
-use crate::convergence::tolerances::SLIGHT;
 use crate::derivatives::StepDerivatives;
 use crate::dla::Dla;
 use crate::increment::Departure;
@@ -44,9 +43,13 @@ pub(crate) fn sup<const N: usize>(x: &[f64; N]) -> f64 {
     most
 }
 
-/// Whether a velocity meets `A v + b = 0` to the round-off of its terms and of the corrections that led to it.
+/// Whether a velocity meets `A v + b = 0` to the part `within` of the sizes of its terms.
 #[inline(always)]
-fn constraint_holds<const N: usize, const M: usize>(a: &[[f64; N]; M], b: &[f64; M], v: &[f64; N]) -> bool {
+fn constraint_holds<const N: usize, const M: usize>(
+    (a, b): (&[[f64; N]; M], &[f64; M]),
+    v: &[f64; N],
+    within: f64,
+) -> bool {
     let mut all = true;
     for k in 0..M {
         let (mut slip, mut size) = (b[k], b[k].abs());
@@ -55,7 +58,7 @@ fn constraint_holds<const N: usize, const M: usize>(a: &[[f64; N]; M], b: &[f64;
             slip += term;
             size += term.abs();
         }
-        all &= slip.abs() <= SLIGHT * size;
+        all &= slip.abs() <= within * size;
     }
     all
 }
