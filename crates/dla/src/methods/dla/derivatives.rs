@@ -57,7 +57,7 @@ impl StepDerivatives {
             condition = larger(condition, (0..N).map(|i| (matrix[j][i] * column[i]).abs()).sum());
         }
         for (sizes, row) in self.sizes.iter_mut().zip(matrix) {
-            sizes[..N].copy_from_slice(&mapped(row, |x| x.abs()));
+            sizes[..N].copy_from_slice(&mapped(row, f64::abs));
         }
         self.positive = inverse.is_positive();
         (self.stale, self.more, self.searches) = (false, 0, 0);

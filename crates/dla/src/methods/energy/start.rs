@@ -89,9 +89,9 @@ impl<const N: usize> EnergyStart<N> {
         for k in 0..2 * N {
             let (mut place, mut speed) = (*q, self.xi);
             if k < N {
-                place[k] += places[k]
+                place[k] += places[k];
             } else {
-                speed[k - N] += speeds[k - N]
+                speed[k - N] += speeds[k - N];
             }
             let [q_there, pi_there] = rates(system, t, &place, &speed)?;
             for i in 0..N {
