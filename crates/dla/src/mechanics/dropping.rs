@@ -172,7 +172,8 @@ pub(crate) fn even_accelerations<const N: usize, const M: usize>(
     accelerations: &[[f64; N]; 4],
 ) -> Result<(), StepError> {
     let [first, others @ ..] = accelerations;
-    if M == 0 || !others.iter().any(|other| turns(UNEVEN, first, other)) {
+    // A single row depends on no other.
+    if M < 2 || !others.iter().any(|other| turns(UNEVEN, first, other)) {
         return Ok(());
     }
     rank_drop(system, step, start, 1.0).map_or(Ok(()), |dropped| Err(dropped.into()))
