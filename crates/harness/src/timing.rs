@@ -58,7 +58,7 @@ pub(crate) struct Ticker<'a> {
 
 impl<'a> Ticker<'a> {
     const EVERY: u64 = 1 << 10;
-    /// Steps of systems with more coordinates than so many take the longer, the more there are.
+    /// Largest number of coordinates of a system whose steps take about the same time; beyond, the time grows with the number.
     const FEW: u64 = 64;
 
     /// Every how many steps of a system the progress is told.

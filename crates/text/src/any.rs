@@ -13,10 +13,7 @@ pub const MOST_CONSTRAINTS: usize = 6;
 ///
 /// The mechanism has the coordinates and constraints of the model, and perhaps more behind them that pad the system to its shape: these
 /// begin at rest at zero, and stay there.
-pub struct TextMechanics {
-    model: Arc<TextModel>,
-    shape: Shape,
-}
+pub struct TextMechanics(Shape);
 
 /// A shape `(N, M)` has room for `n` coordinates and `m` constraints if `n <= N`, `m <= M` and `n - m <= N - M`.
 enum Shape {
@@ -29,12 +26,12 @@ enum Shape {
 
 /// Evaluates an expression of the system in its shape.
 macro_rules! in_its_shape {
-    ($shape:expr, $system:ident => $value:expr) => {
+    ($shape:expr, $shaped:ident => $value:expr) => {
         match $shape {
-            Shape::Small($system) => $value,
-            Shape::Middle($system) => $value,
-            Shape::Large($system) => $value,
-            Shape::Largest($system) => $value,
+            Shape::Small($shaped) => $value,
+            Shape::Middle($shaped) => $value,
+            Shape::Large($shaped) => $value,
+            Shape::Largest($shaped) => $value,
         }
     };
 }
@@ -65,26 +62,26 @@ impl TextMechanics {
         let shape = (Shaped::new(model, start, family).map(Shape::Small))
             .or_else(|| Shaped::new(model, start, family).map(Shape::Middle))
             .or_else(|| Shaped::new(model, start, family).map(Shape::Large))
-            .or_else(|| Shaped::new(model, start, family).map(Shape::Largest))?;
-        Some(Self { model: Arc::clone(model), shape })
+            .or_else(|| Shaped::new(model, start, family).map(Shape::Largest));
+        shape.map(Self)
     }
 
     /// The model that the texts describe.
     #[must_use]
     pub fn model(&self) -> &TextModel {
-        &self.model
+        in_its_shape!(&self.0, shaped => shaped.system.model())
     }
 
     /// The system for runs.
     #[must_use]
     pub fn mechanism(&self) -> Box<dyn Mechanism + '_> {
-        in_its_shape!(&self.shape, system => system.mechanism())
+        in_its_shape!(&self.0, shaped => shaped.mechanism())
     }
 
     /// The system as a member of its family ([`of_family`](Self::of_family)); `None` for any other system.
     #[must_use]
     pub fn member(&self) -> Option<Box<dyn ParametrisedMechanism + '_>> {
-        in_its_shape!(&self.shape, system => system.member())
+        in_its_shape!(&self.0, shaped => shaped.member())
     }
 }
 

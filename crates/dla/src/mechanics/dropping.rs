@@ -172,7 +172,7 @@ pub(crate) fn even_accelerations<const N: usize, const M: usize>(
     accelerations: &[[f64; N]; 4],
 ) -> Result<(), StepError> {
     let [first, others @ ..] = accelerations;
-    // A single row depends on no other.
+    // A single row depends on no other; where it vanishes, the change of the velocity tells ([`on_branch`]).
     if M < 2 || !others.iter().any(|other| turns(UNEVEN, first, other)) {
         return Ok(());
     }

@@ -1,6 +1,6 @@
 use crate::convergence::{most_roundings, tolerances::OF_CORRECTION};
 use crate::{History, Mechanics, NewtonError, Stage, State, StepError};
-use lagrangian::linear::larger;
+use lagrangian::linear::largest;
 use lagrangian::{Dual, Rounded, RowSpace, Saddle, from_fn, mapped};
 
 /// The increment of a step with its end projected onto the constraints on positions, `g(q1) = 0`, in the kinetic metric: Newton's method
@@ -31,7 +31,7 @@ pub(crate) fn onto_positions<const N: usize, const M: usize>(
         for i in 0..N {
             increment[i] += moved[i];
         }
-        let (step, size) = (sup(&moved), sup(&q1));
+        let (step, size) = (largest(&moved), largest(&q1));
         history.push(step / size);
         if !step.is_finite() {
             return Err(fail(NewtonError::NotFinite { iteration, history }));
@@ -92,10 +92,6 @@ fn correction<const N: usize, const M: usize>(
     // Without a mass in some direction the kinetic metric is none, and another one serves.
     let euclidean = || Saddle { block: from_fn(|i| from_fn(|j| f64::from(i == j))), ..saddle }.solve_some(some);
     saddle.solve_some(some).or_else(|_| euclidean()).map(|(moved, _)| moved)
-}
-
-fn sup<const N: usize>(x: &[f64; N]) -> f64 {
-    x.iter().fold(0.0, |m, x| larger(m, *x))
 }
 
 /// Refuses a system with constraints that a method cannot carry.

@@ -34,7 +34,7 @@ fn a_sleigh_with_parameters_and_controls() {
     let system = Controlled::at(&START.p);
     let sensitivity = Sensitivity::of_member(&system);
     agrees!(sensitivity, Controlled::at, (Start::Admissible, START), Dla::midpoint(), Gauss::new::<4>());
-    // Off the distribution the derivative is that of the equations in their general form.
+    // Off the distribution, the equations in their general form give the derivative.
     agrees!(sensitivity, Controlled::at, (Start::Any, START), Dla::midpoint(), Gauss::new::<4>());
 }
 

@@ -19,12 +19,12 @@ fn train() -> Train {
     Train::new(lead, trailers, |trailer| trailer.sleigh).unwrap()
 }
 
-/// A run from such a start, of which so many samples are kept.
+/// The request of a run from a start, which keeps about `samples` nodes.
 pub(super) fn request(schedule: &Schedule, start: &AssemblyState, samples: u64) -> Request {
     Request { schedule: *schedule, q: start.unwrapped(), v: start.v().to_vec(), samples }
 }
 
-/// It is made, and every so manieth node is kept.
+/// The run of a train, of which every node in `every` is kept.
 pub(super) fn made(train: &Train, method: &Method, schedule: &Schedule, start: &AssemblyState, every: u64) -> Watched {
     watched((train, start), method, schedule, &[], every)
 }

@@ -1,5 +1,5 @@
 use super::Rotor;
-use dla::ParametrisedMechanics;
+use dla::{PARAMETERS as ROOM, ParametrisedMechanics};
 use lagrangian::{
     AdmissibleBasis, Constraint, Effect, Gradients, Parametrised, Piecewise, Scalar, Seeded, SeededMember,
 };
@@ -8,9 +8,6 @@ use sleigh::{Sleigh, TimeFunction};
 
 /// The parameters of a [`SleighFamily`] in their order, with their names in scenes.
 pub const PARAMETERS: [&str; 3] = ["sleigh.mass", "sleigh.inertia", "sleigh.offset"];
-
-/// Number of directions that a number carries.
-const ROOM: usize = 8;
 
 /// A sleigh on which no velocity is imposed, with its effects, as a function of [`PARAMETERS`]: three coordinates, or four with a rotor, and
 /// one constraint. [`SceneSystem::member`](crate::SceneSystem::member) asks for no other shape.

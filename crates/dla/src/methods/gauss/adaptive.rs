@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 ///
 /// The highest Legendre coefficient of the slopes of a step shows how smooth the motion is along it: if coefficients fall off evenly, its
 /// power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. The defect of the equations at other
-/// points is a second estimate, which detects corners, jumps, pulses and what is as steep, unless all functions of the system are
+/// points is a second estimate, which detects corners, jumps, pulses and smooth functions that are as steep, unless all functions of the system are
 /// polynomials, sines and cosines of the state.
 /// Steps are powers of the fourth root of two (s), so that a few fixed matrices continue the polynomial of one step into the next. Stages
 /// are iterated to a fraction of the tolerance, not to rounding: the method is on the constraint by construction, but it is symmetric to
