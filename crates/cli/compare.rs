@@ -101,7 +101,7 @@ pub(crate) fn compare_scene(
         records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
     let (mut rows, mut series) = (Vec::new(), Vec::new());
     for record in &records {
-        inspect::warn_of_jumps(record);
+        inspect::warn(record);
         let whole = Some(record).filter(|record| record.is_whole());
         let there = whole.and_then(|record| reference.at(record.t));
         let error = there.map(|end| system.distance(&record.q, &end));

@@ -38,10 +38,10 @@ pub(crate) fn methods(names: &[&str], alpha: Option<f64>, tolerance: Option<f64>
     Ok(names.iter().map(|name| Method::of(name, alpha, tolerance)).collect::<Result<_, _>>()?)
 }
 
-/// Warns of steps of a run that change the energy though no force does that work.
-pub(crate) fn warn_of_jumps(record: &Record) {
-    if let Some(jump) = record.energy.jump {
-        terminal::say("warning", &format!("{}: {jump}", record.method.name));
+/// Warns of what a user of a run is to know.
+pub(crate) fn warn(record: &Record) {
+    for warning in record.warnings() {
+        terminal::say("warning", &format!("{}: {warning}", record.method.name));
     }
 }
 

@@ -31,7 +31,10 @@ pub(crate) fn record_of(scene: &str, record: &Record, end: &Value) -> Value {
     if let Some(jump) = record.energy.jump {
         let EnergyJump { time, change, energy, count } = jump;
         object["energy"]["jump"] = json!({"t": time, "change": change, "energy": energy, "steps": count});
-        object["warnings"] = json!([jump.to_string()]);
+    }
+    let warnings = record.warnings();
+    if !warnings.is_empty() {
+        object["warnings"] = json!(warnings);
     }
     if record.derivation_seconds > 0.0 {
         object["derivation_seconds"] = json!(record.derivation_seconds);

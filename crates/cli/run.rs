@@ -101,7 +101,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         }
     }
     events.iter().for_each(Events::warn);
-    inspect::warn_of_jumps(record);
+    inspect::warn(record);
     let computed = CliError::of_failures(substeps::failure(record).or_else(|| table::not_finite(record)));
     if let (Err(_), Err(error)) = (&computed, &written) {
         terminal::say("error", error);

@@ -110,3 +110,16 @@ fn a_step_that_changes_the_energy_is_told() {
     assert_eq!(verdict("bowl --duration 20 --methods dla"), "random walk");
     assert!(object(&run("r22_tiny_swing.toml")).get("warnings").is_none());
 }
+
+/// A coordinate of next to no inertia divides the round-off of its momentum; who is left with few digits says so.
+#[test]
+fn unknowns_that_hold_few_digits_are_told() {
+    let light = |method: &str| {
+        let line = "bowl --duration 5 --step 0.05 --set start.turn_rate=0.1 --set sleigh.offset=0 --set sleigh.inertia";
+        object(&folder("r22_tiny_swing.toml").line(&format!("run {line}=2e-12 --method {method} --json")))
+    };
+    let told = light("energy4");
+    assert!(told["warnings"][0].as_str().unwrap().contains("uncertain by"), "{told}");
+    // The control: the same motion by another formula, and by the same method with more inertia.
+    assert!(light("gauss8").get("warnings").is_none());
+}

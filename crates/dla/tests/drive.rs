@@ -47,7 +47,7 @@ impl OneStep<1, 1> for Counting {
         }
         state.advance(&[1.0], [(1.0 + t + h).recip()], None);
         let k = self.times.len() as u32;
-        Ok(StepReport { impulses: [[0.25 * f64::from(k)], [0.75 * f64::from(k)]], iterations: k, work: None })
+        Ok(StepReport { impulses: [[0.25 * f64::from(k)], [0.75 * f64::from(k)]], ..StepReport::of(k) })
     }
 }
 

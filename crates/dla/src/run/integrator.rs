@@ -44,13 +44,15 @@ pub struct Report {
     pub iterations: u32,
     /// The work that was done over the step (J), of a method that reports one.
     pub work: Option<f64>,
+    /// As [`StepReport::rounding`].
+    pub rounding: f64,
 }
 
 impl Report {
     /// The report of a step of `rows` constraints of which nothing is known.
     #[must_use]
     pub fn of(rows: usize) -> Self {
-        Self { impulses: [vec![0.0; rows], vec![0.0; rows]], iterations: 0, work: None }
+        Self { impulses: [vec![0.0; rows], vec![0.0; rows]], iterations: 0, work: None, rounding: 0.0 }
     }
 
     /// Adds what a further step did.
@@ -59,6 +61,7 @@ impl Report {
             sum.iter_mut().zip(impulses).for_each(|(sum, impulse)| *sum += impulse);
         }
         self.iterations += next.iterations;
+        self.rounding = self.rounding.max(next.rounding);
         self.work = match (self.work, next.work) {
             (Some(before), Some(work)) => Some(before + work),
             (before, work) => before.or(work),
@@ -83,7 +86,7 @@ impl Report {
     /// The report of a step of a shape.
     pub(crate) fn typed<const M: usize>(&self) -> StepReport<M> {
         let impulses = [super::state::row(&self.impulses[0]), super::state::row(&self.impulses[1])];
-        StepReport { impulses, iterations: self.iterations, work: self.work }
+        StepReport { impulses, iterations: self.iterations, work: self.work, rounding: self.rounding }
     }
 
     #[inline]
@@ -91,7 +94,7 @@ impl Report {
         for (own, impulses) in self.impulses.iter_mut().zip(&report.impulses) {
             own.copy_from_slice(impulses);
         }
-        (self.iterations, self.work) = (report.iterations, report.work);
+        (self.iterations, self.work, self.rounding) = (report.iterations, report.work, report.rounding);
     }
 }
 

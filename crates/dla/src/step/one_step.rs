@@ -134,6 +134,8 @@ pub struct StepReport<const M: usize> {
     /// The work done over the step (J), by a method whose energy balance knows it, or that was [asked](OneStep::measure_work) to integrate
     /// it.
     pub work: Option<f64>,
+    /// Round-off that the equations of the step leave in its unknowns, relative to the largest of them; zero if their last digits settle.
+    pub rounding: f64,
 }
 
 impl<const M: usize> StepReport<M> {
@@ -141,7 +143,7 @@ impl<const M: usize> StepReport<M> {
     #[must_use]
     #[inline(always)]
     pub fn of(iterations: u32) -> Self {
-        Self { impulses: [[0.0; M]; 2], iterations, work: None }
+        Self { impulses: [[0.0; M]; 2], iterations, work: None, rounding: 0.0 }
     }
 
     /// The sum of the reports of this step and the next.
@@ -152,7 +154,8 @@ impl<const M: usize> StepReport<M> {
             (Some(before), Some(work)) => Some(before + work),
             (before, work) => before.or(work),
         };
-        Self { impulses: [sum(0), sum(1)], iterations: self.iterations + next.iterations, work }
+        let (iterations, rounding) = (self.iterations + next.iterations, self.rounding.max(next.rounding));
+        Self { impulses: [sum(0), sum(1)], iterations, work, rounding }
     }
 
     /// The constraint forces, averaged over a step of length `h`: second-order accurate in its middle.

@@ -36,7 +36,7 @@ impl OneStep<1, 1> for Short {
         self.made.extend([t, h]);
         let v = *state.v();
         state.advance(&[h * v[0]], v, None);
-        Ok(StepReport { impulses: [[h], [2.0 * h]], iterations: 1, work: (t > 0.2).then_some(h) })
+        Ok(StepReport { impulses: [[h], [2.0 * h]], work: (t > 0.2).then_some(h), ..StepReport::of(1) })
     }
     fn memory(&self) -> Vec<f64> {
         self.made.clone()

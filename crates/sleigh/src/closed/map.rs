@@ -58,7 +58,7 @@ where
             Some(Ok(step)) => {
                 let moved = state.advance_where_finite(&step.increment, step.velocity, step.xi);
                 moved.inspect_err(|_| memory.forget())?;
-                Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None })
+                Ok(StepReport { impulses: step.impulses, ..StepReport::of(step.iterations) })
             }
             Some(Err(source)) => {
                 memory.forget();

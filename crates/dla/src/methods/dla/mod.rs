@@ -193,7 +193,7 @@ impl<D> Dla<D> {
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
         self.kept.begins(block.zip(mass), h, (state.q(), &v1));
-        Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
+        Ok(StepReport { impulses: [lambda, mu], ..StepReport::of(iterations) })
     }
 }
 

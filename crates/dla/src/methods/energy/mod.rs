@@ -85,7 +85,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Energy {
         state.stays_finite(&end.increment, &v1)?;
         state.advance_with_momenta(&end.increment, v1, end.xi, end.pi);
         self.work = end.work;
-        Ok(StepReport { work: Some(end.work), ..StepReport::of(end.iterations) })
+        Ok(StepReport { work: Some(end.work), rounding: end.rounding, ..StepReport::of(end.iterations) })
     }
 }
 
@@ -118,6 +118,7 @@ struct PathEnd<const N: usize> {
     pi: [Twofold; N],
     work: f64,
     iterations: u32,
+    rounding: f64,
 }
 
 impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
@@ -175,14 +176,15 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);
                 self.check(&ends, work, &averages.steepest, &path)?;
-                return Ok(self.end(&path, &points, work, iterations));
+                let end = self.end(&path, &points);
+                return Ok(PathEnd { work, iterations, rounding: convergence.rounding(), ..end });
             }
         }
     }
 
-    /// Increment and quasi-velocities at the end of the path.
+    /// Increment, quasi-velocities and quasi-momenta at the end of the path.
     #[inline(always)]
-    fn end(&self, path: &EnergyPath<N>, points: &PathPoints<N>, work: f64, iterations: u32) -> PathEnd<N> {
+    fn end(&self, path: &EnergyPath<N>, points: &PathPoints<N>) -> PathEnd<N> {
         let (increment, gained) = path.increments(self.rule, self.h);
         let (start, last) = (self.start, self.rule.ends().0);
         let mut xi = mapped(&points.xi, |xi| xi.0[last]);
@@ -193,7 +195,7 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
             }
         }
         let sum = |a: usize| Twofold::from(start.pi[a]) + Twofold::from(gained[a]) + Twofold::from(start.rest[a]);
-        PathEnd { increment, xi, pi: from_fn(sum), work, iterations }
+        PathEnd { increment, xi, pi: from_fn(sum), work: 0.0, iterations: 0, rounding: 0.0 }
     }
 
     /// Checks that the energy has changed by the work of the forces.

@@ -211,6 +211,6 @@ impl<const S: usize> Lobatto<S> {
         state.stays_finite(&increment, &v1)?;
         state.advance(&increment, v1, None);
         let work = self.sources.any().then(|| h * mean.mean());
-        Ok(StepReport { impulses: ends, iterations, work })
+        Ok(StepReport { impulses: ends, work, ..StepReport::of(iterations) })
     }
 }

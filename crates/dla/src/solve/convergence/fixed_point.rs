@@ -20,6 +20,8 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     quiet: u32,
     /// The relative change that may still be to come.
     left: f64,
+    /// The largest change of the last iteration that counts as round-off of terms, relative.
+    rounding: f64,
     iteration: u32,
     limit: u32,
     history: History,
@@ -49,10 +51,18 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
             least: f64::INFINITY,
             quiet: 0,
             left: UNBIASED,
+            rounding: 0.0,
             iteration: 0,
             limit,
             history: History::new(),
         }
+    }
+
+    /// Round-off of their terms that the unknowns are left with, relative to the largest of them; zero while none had to be asked for.
+    #[must_use]
+    #[inline(always)]
+    pub fn rounding(&self) -> f64 {
+        self.rounding
     }
 
     /// The test with the relative change `left`, in place of [`UNBIASED`].
@@ -87,6 +97,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         self.iteration += 1;
         let iteration = self.iteration;
         let (mut settled, mut asks, mut worst, mut noisiest) = (true, false, 0.0_f64, 0.0_f64);
+        self.rounding = 0.0;
         // A group whose true value is zero has no size of its own to diverge from.
         let all = groups.iter().flatten().fold(0.0, |most: f64, (_, size)| most.max(*size));
         for (g, (group, components)) in groups.iter().zip(&mut self.components).enumerate() {
@@ -101,6 +112,8 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 asks |= stalls && !ends && change > rounding;
                 if change > rounding {
                     worst = worst.max(change);
+                } else if known > 0.0 {
+                    self.rounding = self.rounding.max(change / all);
                 }
                 noisiest = noisiest.max(rounding);
             }

@@ -183,7 +183,7 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
     method.kept.mass.took::<N>(end.corrections);
     // `v1` and not the velocity of the state: that has just been stored, and the load would stall on store forwarding.
     method.kept.ended(h, state.q(), &v1);
-    Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
+    Some(StepReport { impulses: [lambda, end.lambda], ..StepReport::of(corrections) })
 }
 
 #[cfg(test)]
