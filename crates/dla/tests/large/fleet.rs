@@ -34,7 +34,7 @@ pub struct Fleet<const N: usize, const BASIS: bool>(pub Mirror<N>);
 
 /// Points on unit spheres, constrained in their positions: great circles. The last row may say the same as the first.
 #[derive(Debug, Clone, Copy)]
-#[cfg_attr(debug_assertions, allow(dead_code, reason = "not every build has a shape of them"))]
+#[cfg_attr(all(debug_assertions, not(clippy)), allow(dead_code, reason = "not every build has a shape of them"))]
 pub struct Balls<const N: usize, const TWICE: bool>(pub Mirror<N>);
 
 macro_rules! systems {

@@ -1,7 +1,7 @@
 //! Systems of up to sixty coordinates on threads with the stack that the methods count on, and no more.
 
 mod fleet;
-#[cfg(not(debug_assertions))]
+#[cfg(any(clippy, not(debug_assertions)))]
 mod shapes;
 
 use dla::{Dla, Energy, Hint, RunError, StackUse, StepError};

@@ -1,10 +1,10 @@
 //! Every method on shapes of up to sixty coordinates: they take long to compile, and are compiled for builds with optimisation only.
 
-use crate::large::fleet::{Balls, Fleet, Known, Mirror, on_stack};
+use crate::large::fleet::{Balls, Ended, Fleet, Known, Mirror, on_stack};
 use crate::large::{SECOND, STACK, ends, is_too_large, with_stack};
 use dla::{
-    Composition, Dla, Energy, Form, Gauss, GaussAdaptive, Gni, Lobatto, OneStep, Sensitivity, SensitivityError, State,
-    StepError, consistent_start,
+    Composition, Dla, Dop853, Energy, Form, Gauss, GaussAdaptive, Gni, ImplicitMidpoint, Lobatto, OneStep, Rk4,
+    Rk4Projected, Rk4Reduced, Sensitivity, SensitivityError, State, StepError, consistent_start,
 };
 use lagrangian::{System, classify};
 
@@ -155,4 +155,25 @@ fn steps_allocate_nothing() {
     let mut state = State::new(mirror.of(&x), mirror.of(&w), [false; 60]);
     assert_eq!(allocations(&Fleet::<60, true>(mirror), Dla::midpoint(), &mut state), 0);
     assert_eq!(allocations(&Fleet::<60, true>(mirror), Gauss::new::<4>(), &mut state), 0);
+}
+
+fn measured<Method: OneStep<60, 20>>(method: impl FnOnce() -> Method + Send + 'static) -> Ended {
+    on_stack::<Fleet<60, true>, _, 60, 20>(STACK, method).unwrap()
+}
+
+/// Baselines, to the errors of their orders; only those in a basis, or projected, stay on the constraint.
+#[test]
+#[ignore = "slow"]
+fn sixty_by_baselines() {
+    for (end, error, slip) in [
+        (measured(|| Rk4), 1e-8, 1e-8),
+        (measured(|| Rk4Projected), 1e-8, 1e-13),
+        (measured(|| Rk4Reduced), 1e-8, 1e-13),
+        (measured(ImplicitMidpoint::default), 2e-4, 1e-4),
+        (measured(|| Dop853::new(1e-10)), 1e-9, 1e-13),
+    ] {
+        assert!(end.error <= error && end.slip <= slip, "{end:?}");
+    }
+    let projected = on_stack::<Balls<60, false>, _, 60, 20>(STACK, || Rk4Projected).unwrap();
+    assert!(projected.error <= 1e-8 && projected.slip <= 1e-13 && projected.off <= 1e-8, "{projected:?}");
 }

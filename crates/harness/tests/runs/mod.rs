@@ -5,8 +5,6 @@ mod chaos;
 mod diverged;
 mod drift;
 mod ensembles;
-#[cfg(not(debug_assertions))]
-mod large;
 mod measures;
 mod precision;
 mod same_bits;
