@@ -52,7 +52,7 @@ example parking parking.svg
 take parking.svg parking-gap.svg
 
 # Of the worked examples.
-for example in "backing dla,lobatto5 path worked-backing.svg" "rattle gauss8,dla path worked-rattle.svg" \
+for example in "backing dla,dla4 path worked-backing.svg" "rattle gauss8,dla path worked-rattle.svg" \
     "slipping rk4,rk4-projected,dla,dla4 constraint worked-slipping.svg"; do
     read -r scene methods kind picture <<<"$example"
     "$noslip" compare "$root/docs/worked/$scene.toml" --methods "$methods" --report "worked-$scene" >/dev/null

@@ -65,7 +65,9 @@ impl Slip {
         // Sub-steps so short that the time does not change show nothing.
         match self.before.as_ref().map(|(t, _)| node.t - t) {
             Some(h) if h != 0.0 => self.over(node, h),
-            _ => self.resume(node),
+            Some(_) => self.resume(node),
+            // After a resumption with an unknown residual there is no node before.
+            None => self.start(node),
         }
     }
 

@@ -55,7 +55,8 @@ fn exponents_do_not_depend_on_the_coordinates_of_a_pendulum() {
 #[test]
 #[ignore = "slow"]
 fn exponents_do_not_depend_on_the_coordinates_of_a_pendulum_at_length() {
-    pendulum("300", &["gauss8", "dla", "dla4", "gauss4"], 0.15);
+    // The end of `gauss4` is moved onto the circle by more than the derivative of its step allows for, and is refused.
+    pendulum("300", &["gauss8", "dla", "dla4", "gauss6"], 0.15);
 }
 
 /// A driven pendulum by its angle, and by two coordinates on a circle: directions off the circle have no exponent. One motion, and where

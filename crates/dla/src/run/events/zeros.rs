@@ -53,7 +53,7 @@ fn searched(
     let mut zeros = Vec::new();
     for (mut from, mut to) in isolate(&points, &mut *f) {
         if !exact {
-            let Some(bracket) = truly([from.at, to.at], f) else {
+            let Some(bracket) = truly([from.at, to.at], from.value < 0.0, f) else {
                 incomplete = true;
                 continue;
             };
@@ -67,14 +67,14 @@ fn searched(
     Zeros { zeros, incomplete }
 }
 
-/// The points of a change of sign of the function itself, at two places or half their distance beyond them; `None` if there is no change of
-/// sign.
-fn truly([from, to]: [f64; 2], f: &mut dyn FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint)> {
+/// The points of a change of sign of the function itself in a direction, at two places or half their distance beyond them; `None` if there is
+/// no such change. In the other direction there is the neighbour of a close crossing, which has a bracket of its own.
+fn truly([from, to]: [f64; 2], rising: bool, f: &mut dyn FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint)> {
     let beyond = 0.5 * (to - from);
     let ends = [(from, to), ((from - beyond).max(0.0), to), (from, (to + beyond).min(1.0))];
     ends.into_iter().find_map(|(from, to)| {
         let [from, to] = [from, to].map(|at| RootPoint { at, value: f(at) });
-        let crosses = if from.value < 0.0 { to.value >= 0.0 } else { from.value > 0.0 && to.value <= 0.0 };
+        let crosses = if rising { from.value < 0.0 && to.value >= 0.0 } else { from.value > 0.0 && to.value <= 0.0 };
         crosses.then_some((from, to))
     })
 }
