@@ -113,7 +113,7 @@ fn a_step_that_changes_the_energy_is_told() {
 
 /// A coordinate of next to no inertia divides the round-off of its momentum; who is left with few digits says so.
 #[test]
-fn unknowns_that_hold_few_digits_are_told() {
+fn velocities_that_hold_few_digits_are_told() {
     let light = |method: &str| {
         let line = "bowl --duration 5 --step 0.05 --set start.turn_rate=0.1 --set sleigh.offset=0 --set sleigh.inertia";
         object(&folder("r22_tiny_swing.toml").line(&format!("run {line}=2e-12 --method {method} --json")))

@@ -1,7 +1,7 @@
 use crate::slip::Slip;
 use crate::{Blocks, Drift, DriftVerdict, Energies, EnergyJump, Method, MethodInfo, Request, SubstepSummary, Trend};
 use dla::{AnyState, Checkpoint, CheckpointError, Observer, Report, RunError, StepError, Undivided, View, Work};
-use lagrangian::linear::larger;
+use lagrangian::linear::{larger, largest};
 use std::ops::ControlFlow;
 
 /// Newton iterations a step; zeros for an explicit method.
@@ -71,8 +71,8 @@ pub struct Record {
     /// `max |g(q, t)|` over all nodes, the residual of the constraints on positions; `None` if no constraint is the rate of a function `g`
     /// of the positions ([`System::holonomic`](lagrangian::System::holonomic)).
     pub leaf_max: Option<f64>,
-    /// Round-off that the equations of a step left in its unknowns, relative to the largest of them, at most; zero if their last digits
-    /// settled in every step.
+    /// Round-off that the equations of a step left in its velocities, at most, relative to the largest velocity of the run; zero if their last
+    /// digits settled in every step.
     pub rounding: f64,
     /// Time at the end (s).
     pub t: f64,
@@ -97,12 +97,12 @@ impl Record {
         (self.steps > 0).then(|| self.wall_seconds / (self.steps as f64 * self.step.abs()))
     }
 
-    /// What a user of the result is to know: steps that change the energy by themselves, and unknowns that hold few digits.
+    /// What a user of the result is to know: steps that change the energy by themselves, and velocities that hold few digits.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let rounded = (self.rounding > FEW_DIGITS).then(|| {
             format!(
-                "round-off leaves the unknowns of a step uncertain by {:.0e} of their size, and adds up over the steps: the \
+                "round-off leaves the velocities of a step uncertain by {:.0e} of the largest, and adds up over the steps: the \
                  method divides the round-off of momenta by a small inertia; `dla` and `gauss*` do not",
                 self.rounding
             )
@@ -132,7 +132,7 @@ impl Record {
     }
 }
 
-/// Round-off of a step's unknowns that is told, relative to them.
+/// Round-off of a step's velocities that is told, relative to the largest.
 const FEW_DIGITS: f64 = 1e-11;
 
 /// The observer that measures a run.
@@ -152,6 +152,7 @@ pub(crate) struct Meter {
     iterations: u64,
     most: u32,
     rounding: f64,
+    fastest: f64,
     bucket: (f64, f64),
     samples: Vec<Sample>,
     /// The end, if it is no regular sample.
@@ -181,6 +182,7 @@ impl Meter {
             iterations: 0,
             most: 0,
             rounding: 0.0,
+            fastest: 0.0,
             bucket: (0.0, 0.0),
             samples: Vec::new(),
             last_sample: None,
@@ -193,7 +195,16 @@ impl Meter {
     /// Writes to a checkpoint all that the rest of a run needs.
     pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
         let (energy, constraint) = self.bucket;
-        let sizes = [self.initial, self.last, self.max_error, self.constraint_max, energy, constraint, self.rounding];
+        let sizes = [
+            self.initial,
+            self.last,
+            self.max_error,
+            self.constraint_max,
+            energy,
+            constraint,
+            self.rounding,
+            self.fastest,
+        ];
         checkpoint.put("meter", &sizes);
         checkpoint.put("trend", &self.trend.sums());
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most)]);
@@ -220,13 +231,14 @@ impl Meter {
         state: &AnyState,
         work: Work,
     ) -> Result<Self, CheckpointError> {
-        let [initial, last, max_error, constraint_max, energy, constraint, rounding] = checkpoint.get("meter")?;
+        let [initial, last, max_error, constraint_max, energy, constraint, rounding, fastest] =
+            checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
         let substeps = new.substeps.map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let most = u32::try_from(most).unwrap_or(u32::MAX);
         let trend = Trend::of_sums(checkpoint.get("trend")?);
         let end = (made, t, state.unwrapped(), state.v().to_vec());
-        let sizes = Self { initial, last, max_error, constraint_max, rounding, end, ..new };
+        let sizes = Self { initial, last, max_error, constraint_max, rounding, fastest, end, ..new };
         let (blocks, slip) = (Blocks::load(checkpoint)?, sizes.slip.load(checkpoint)?);
         let energies = Energies::load(checkpoint)?;
         let list = checkpoint.list("samples")?;
@@ -304,7 +316,7 @@ impl Meter {
             constraint_max: self.constraint_max,
             step_constraint_max: self.slip.step_max(),
             leaf_max: self.slip.leaf_max(),
-            rounding: self.rounding,
+            rounding: if self.rounding > 0.0 { self.rounding / self.fastest } else { 0.0 },
             t,
             q,
             v,
@@ -345,6 +357,7 @@ impl Observer for Meter {
         self.iterations += u64::from(report.iterations);
         self.most = self.most.max(report.iterations);
         self.rounding = self.rounding.max(report.rounding);
+        self.fastest = self.fastest.max(largest(node.state.v()));
         if node.k.is_multiple_of(self.every) {
             self.sample(node);
         }

@@ -134,7 +134,7 @@ pub struct StepReport<const M: usize> {
     /// The work done over the step (J), by a method whose energy balance knows it, or that was [asked](OneStep::measure_work) to integrate
     /// it.
     pub work: Option<f64>,
-    /// Round-off that the equations of the step leave in its unknowns, relative to the largest of them; zero if their last digits settle.
+    /// Round-off that the equations of the step leave in its velocities, in their units; zero if the last digits settle.
     pub rounding: f64,
 }
 

@@ -20,7 +20,7 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     quiet: u32,
     /// The relative change that may still be to come.
     left: f64,
-    /// The largest change of the last iteration that counts as round-off of terms, relative.
+    /// The largest change of the last iteration in the first group that counts as round-off of terms.
     rounding: f64,
     iteration: u32,
     limit: u32,
@@ -58,7 +58,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         }
     }
 
-    /// Round-off of their terms that the unknowns are left with, relative to the largest of them; zero while none had to be asked for.
+    /// Round-off of their terms that the unknowns of the first group are left with, in their unit; zero while none had to be asked for.
     #[must_use]
     #[inline(always)]
     pub fn rounding(&self) -> f64 {
@@ -112,8 +112,8 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 asks |= stalls && !ends && change > rounding;
                 if change > rounding {
                     worst = worst.max(change);
-                } else if known > 0.0 {
-                    self.rounding = self.rounding.max(change / all);
+                } else if g == 0 && known > 0.0 {
+                    self.rounding = self.rounding.max(change);
                 }
                 noisiest = noisiest.max(rounding);
             }
