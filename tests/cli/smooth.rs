@@ -47,8 +47,16 @@ const LONG: [Case; 2] = [
 
 fn ends(cases: &[Case]) {
     for (line, name, right, near) in cases {
-        let run =
-            if line.starts_with("turntable") { Folder::new().json(&format!("run {line} --json")) } else { run(line) };
+        let run = match line.split([' ', '.']).next() {
+            Some("turntable") => Folder::new().json(&format!("run {line} --json")),
+            // Next to no inertia, and so few digits, of which the run warns.
+            Some("light-heading") => {
+                let outcome = folder("light-heading.toml").line(&format!("run {line} --json"));
+                assert!(outcome.code == 0 && outcome.stderr.contains("round-off leaves the velocities"), "{outcome:?}");
+                serde_json::from_str(&outcome.stdout).unwrap()
+            }
+            _ => run(line),
+        };
         let end = run["final"][name].as_f64().unwrap();
         assert!((end - right).abs() <= *near, "{line}: {end:e}, not {right:e}");
     }
