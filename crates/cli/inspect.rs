@@ -38,7 +38,7 @@ pub(crate) fn methods(names: &[&str], alpha: Option<f64>, tolerance: Option<f64>
     Ok(names.iter().map(|name| Method::of(name, alpha, tolerance)).collect::<Result<_, _>>()?)
 }
 
-/// Warns of what a user of a run is to know.
+/// Prints the warnings of a run, each with the name of the method.
 pub(crate) fn warn(record: &Record) {
     for warning in record.warnings() {
         terminal::say("warning", &format!("{}: {warning}", record.method.name));

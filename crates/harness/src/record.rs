@@ -97,7 +97,7 @@ impl Record {
         (self.steps > 0).then(|| self.wall_seconds / (self.steps as f64 * self.step.abs()))
     }
 
-    /// What a user of the result is to know: steps that change the energy by themselves, and velocities that hold few digits.
+    /// Warnings for a user of the result: steps that change the energy though no force does, and velocities that hold few digits.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let rounded = (self.rounding > FEW_DIGITS).then(|| {

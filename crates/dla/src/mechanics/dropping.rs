@@ -172,7 +172,7 @@ pub(crate) fn even_accelerations<const N: usize, const M: usize>(
     accelerations: &[[f64; N]; 4],
 ) -> Result<(), StepError> {
     let [first, others @ ..] = accelerations;
-    // A single row depends on no other; where it vanishes, the change of the velocity tells ([`on_branch`]).
+    // A single row depends on no other row. A step in which the row vanishes changes the velocity, and [`on_branch`] finds that change.
     if M < 2 || !others.iter().any(|other| turns(UNEVEN, first, other)) {
         return Ok(());
     }

@@ -176,15 +176,20 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);
                 self.check(&ends, work, &averages.steepest, &path)?;
-                let end = self.end(&path, &points);
-                return Ok(PathEnd { work, iterations, rounding: convergence.rounding(), ..end });
+                return Ok(self.end(&path, &points, work, (iterations, convergence.rounding())));
             }
         }
     }
 
     /// Increment, quasi-velocities and quasi-momenta at the end of the path.
     #[inline(always)]
-    fn end(&self, path: &EnergyPath<N>, points: &PathPoints<N>) -> PathEnd<N> {
+    fn end(
+        &self,
+        path: &EnergyPath<N>,
+        points: &PathPoints<N>,
+        work: f64,
+        (iterations, rounding): (u32, f64),
+    ) -> PathEnd<N> {
         let (increment, gained) = path.increments(self.rule, self.h);
         let (start, last) = (self.start, self.rule.ends().0);
         let mut xi = mapped(&points.xi, |xi| xi.0[last]);
@@ -195,7 +200,7 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
             }
         }
         let sum = |a: usize| Twofold::from(start.pi[a]) + Twofold::from(gained[a]) + Twofold::from(start.rest[a]);
-        PathEnd { increment, xi, pi: from_fn(sum), work: 0.0, iterations: 0, rounding: 0.0 }
+        PathEnd { increment, xi, pi: from_fn(sum), work, iterations, rounding }
     }
 
     /// Checks that the energy has changed by the work of the forces.
