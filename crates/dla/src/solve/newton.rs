@@ -63,7 +63,8 @@ pub(crate) trait BlockEquations<const U: usize, const S: usize> {
         CorrectionKind::Newton
     }
 
-    /// Whether the equations are met at the point of the last correction, to the round-off of their terms: the correction is not added then.
+    /// Whether the equations are met at the point of the last correction, to the round-off of their terms: that correction ends the search.
+    /// The correction is added all the same: what a frozen Jacobian leaves out has one sign in every step, and would add up.
     #[inline(always)]
     fn is_met(&self) -> bool {
         false
@@ -213,12 +214,12 @@ impl Newton {
                 first: convergence.first(),
                 certain: convergence.is_certain(),
             };
-            if equations.is_met() {
-                return Ok(root(&convergence));
-            }
             let at = *x;
             for (x, d) in x.as_flattened_mut().iter_mut().zip(correction.as_flattened()) {
                 *x += d;
+            }
+            if equations.is_met() {
+                return Ok(root(&convergence));
             }
             let (kind, tolerance, limit) = (equations.kind(), self.tolerance, self.max_iterations);
             let demand = Demand { kind, tolerance, limit, refinable, near };
@@ -275,7 +276,7 @@ mod tests {
     fn search(rate: f64) -> Option<(u32, f64)> {
         let mut x = [[0.9, 0.9e-3]];
         let found =
-            Newton { tolerance: TOLERANCE, max_iterations: 8 }.search_blocks(&mut Frozen { rate }, &mut x).ok()?;
+            Newton { tolerance: TOLERANCE, max_iterations: 9 }.search_blocks(&mut Frozen { rate }, &mut x).ok()?;
         Some((found.iterations, f64::max((x[0][0] - 1.0).abs(), (1e3 * x[0][1] - 1.0).abs())))
     }
 

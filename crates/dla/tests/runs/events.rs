@@ -84,13 +84,23 @@ fn no_crossing_of_ten_thousand_runs_is_missed() {
     assert!(crossed > 0);
 }
 
-/// A pair of crossings within a tenth of a long step, of which one was told twice.
+/// Pairs of crossings within a tenth of a long step, one of which was told twice, or not.
 #[test]
 fn both_crossings_of_a_pair_are_told() {
-    let body = (0.5, 1.700_578_516_547_204_7, 0.781_323_095_951_806_9, false);
-    let one =
-        Just((body, (0.4, -0.431_337_400_587_173_3, false, -2.799_839_844_818_572_4), (0.232_111_808_645_754_5, 10)));
-    assert_eq!(no_crossing_is_missed(TestRunner::new(Config { cases: 1, ..Config::default() }), &one), [2, 2, 0]);
+    let twice = (
+        (0.5, 1.700_578_516_547_204_7, 0.781_323_095_951_806_9, false),
+        (0.4, -0.431_337_400_587_173_3, false, -2.799_839_844_818_572_4),
+        (0.232_111_808_645_754_5, 10),
+    );
+    let once = (
+        (0.573_345_938_499_790_4, 1.692_600_158_911_632_4, 0.483_286_038_889_302_05, true),
+        (0.4, 0.056_942_492_590_841_644, false, -2.910_952_883_697_836_8),
+        (0.229_883_843_533_020_83, 10),
+    );
+    for pair in [twice, once] {
+        let runner = TestRunner::new(Config { cases: 1, ..Config::default() });
+        assert_eq!(no_crossing_is_missed(runner, &Just(pair)), [2, 2, 0]);
+    }
 }
 
 #[test]

@@ -134,6 +134,8 @@ impl Drift {
             _ if energies.exceeded() || energies.runs_off() || runs_away() => DriftVerdict::Diverged,
             DriftVerdict::Bounded if energies.jump().is_some() => DriftVerdict::Undecided,
             DriftVerdict::LinearDrift | DriftVerdict::RandomWalk if of_rounding => DriftVerdict::RoundOff,
+            // A motion that runs away has large energies, whose rounding is no small error beside those at the start.
+            DriftVerdict::Bounded if of_rounding && largest > energies.start() => DriftVerdict::RoundOff,
             verdict => verdict,
         };
         Self { verdict, ..drift }

@@ -67,13 +67,17 @@ fn searched(
     Zeros { zeros, incomplete }
 }
 
-/// The points of a change of sign of the function itself in a direction, at two places or half their distance beyond them; `None` if there is
-/// no such change. In the other direction there is the neighbour of a close crossing, which has a bracket of its own.
+/// The points of a change of sign of the function itself in a direction, at two places or within their distance beyond them; `None` if there
+/// is no such change. In the other direction there is the neighbour of a close crossing, which has a bracket of its own.
 fn truly([from, to]: [f64; 2], rising: bool, f: &mut dyn FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint)> {
-    let beyond = 0.5 * (to - from);
-    let ends = [(from, to), ((from - beyond).max(0.0), to), (from, (to + beyond).min(1.0))];
-    ends.into_iter().find_map(|(from, to)| {
-        let [from, to] = [from, to].map(|at| RootPoint { at, value: f(at) });
+    /// Halves of the distance from the first place, the nearest first.
+    const NEAREST: [[f64; 2]; 7] =
+        [[0.0, 2.0], [0.0, 1.0], [1.0, 2.0], [-1.0, 0.0], [2.0, 3.0], [-2.0, -1.0], [3.0, 4.0]];
+    NEAREST.into_iter().find_map(|halves| {
+        let [from, to] = halves.map(|k| {
+            let at = (from + 0.5 * k * (to - from)).clamp(0.0, 1.0);
+            RootPoint { at, value: f(at) }
+        });
         let crosses = if rising { from.value < 0.0 && to.value >= 0.0 } else { from.value > 0.0 && to.value <= 0.0 };
         crosses.then_some((from, to))
     })

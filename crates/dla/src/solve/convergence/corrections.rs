@@ -250,7 +250,8 @@ fn is_settled(kind: CorrectionKind, tolerance: f64, x: f64, d: f64, last: f64) -
     let shrink = d / last;
     let (next, least) = match kind {
         CorrectionKind::Newton => (d * (shrink * shrink), tolerance),
-        CorrectionKind::Simplified | CorrectionKind::Frozen => (d * (2.0 * shrink), tolerance),
+        CorrectionKind::Simplified => (d * (2.0 * shrink), tolerance),
+        CorrectionKind::Frozen => (d * (2.0 * shrink), UNBIASED),
         CorrectionKind::Chord => (d * shrink, UNBIASED),
     };
     let predicts = last.is_finite() && d <= x;

@@ -5,7 +5,7 @@
 //! | constant | value | from | used by |
 //! |---|---|---|---|
 //! | [`SETTLED`] | `4 eps` | a correction below it changes the last digits of its unknown only | Newton's method, chord method, projection |
-//! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
+//! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, frozen Jacobians, assemblies |
 //! | [`HALF_A_UNIT`] | `eps/2` | as much as the rounding of the result | the implicit midpoint baseline |
 //! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
 //! | [`SLIGHT_OF_FIXED_POINT`] | `1024 eps` | the same, of all stages together, twice without shrinking | fixed points |

@@ -27,7 +27,7 @@ fn searched<const N: usize>(
     x: &mut [[f64; N]; 1],
 ) -> Option<u32> {
     /// After more corrections the step is made without memory.
-    const CORRECTIONS: u32 = 8;
+    const CORRECTIONS: u32 = 9;
     let found = Newton { tolerance, max_iterations: CORRECTIONS }.search_blocks(equations, x).ok()?;
     Some(found.iterations + u32::from(equations.is_met()))
 }
