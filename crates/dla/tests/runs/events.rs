@@ -84,7 +84,7 @@ fn no_crossing_of_ten_thousand_runs_is_missed() {
     assert!(crossed > 0);
 }
 
-/// Pairs of crossings within a tenth of a long step, one of which was told twice, or not.
+/// Pairs of crossings within a tenth of a long step, of which one was told twice, one not, or neither.
 #[test]
 fn both_crossings_of_a_pair_are_told() {
     let twice = (
@@ -97,7 +97,12 @@ fn both_crossings_of_a_pair_are_told() {
         (0.4, 0.056_942_492_590_841_644, false, -2.910_952_883_697_836_8),
         (0.229_883_843_533_020_83, 10),
     );
-    for pair in [twice, once] {
+    let never = (
+        (1.148_321_306_023_009_5, 1.782_643_584_632_944_5, 0.218_660_292_581_811_88, true),
+        (0.4, 0.083_867_452_138_022_59, false, -3.754_749_772_470_436),
+        (0.175_146_846_607_724_17, 10),
+    );
+    for pair in [twice, once, never] {
         let runner = TestRunner::new(Config { cases: 1, ..Config::default() });
         assert_eq!(no_crossing_is_missed(runner, &Just(pair)), [2, 2, 0]);
     }

@@ -54,6 +54,8 @@ pub struct Energies {
     /// The error at the last node, and the largest one (J).
     last: f64,
     largest: f64,
+    /// The error at which the kinetic energy was last asked for since errors had doubled (J).
+    asked: f64,
     jump: Option<EnergyJump>,
     /// The largest change of a step that jumps (J).
     worst: f64,
@@ -68,7 +70,7 @@ impl Energies {
     }
 
     /// Sees the error of the energy at the node at the time `t` (s), and the work since the start (J); the kinetic energy is asked for only
-    /// if the error, or its change, is large beside all energies before.
+    /// if the error has doubled, or the error or its change is large beside all energies before.
     #[inline]
     pub fn see(&mut self, t: f64, error: f64, work: f64, kinetic: impl Fn() -> f64) {
         self.start = larger(self.start, work.abs());
@@ -79,6 +81,14 @@ impl Energies {
         }
         let error = error.abs();
         self.largest = larger(self.largest, error);
+        // The rounding of a motion that runs away grows with its kinetic energy.
+        if error > 2.0 * self.asked {
+            self.asked = error;
+            let kinetic = kinetic().abs();
+            if error < 0.5 * kinetic {
+                self.reached = larger(self.reached, kinetic);
+            }
+        }
         if error <= larger(self.start, self.reached) {
             return;
         }
@@ -138,7 +148,7 @@ impl Energies {
 
     /// Writes them to a checkpoint.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
-        checkpoint.put("energies", &[self.start, self.reached]);
+        checkpoint.put("energies", &[self.start, self.reached, self.asked]);
         let Self { initial, last, largest, worst, .. } = *self;
         let jump = self.jump.map_or([0.0; 4], |jump| [jump.time, jump.change, jump.energy, jump.count as f64]);
         checkpoint.put("energy_jumps", &[[initial, last, largest, worst], jump].concat());
@@ -150,10 +160,10 @@ impl Energies {
     /// # Errors
     /// [`CheckpointError`] if the checkpoint has none.
     pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
-        let [start, reached] = checkpoint.get("energies")?;
+        let [start, reached, asked] = checkpoint.get("energies")?;
         let [exceeded] = checkpoint.counts("exceeded")?;
         let [initial, last, largest, worst, time, change, energy, count] = checkpoint.get("energy_jumps")?;
         let jump = (count > 0.0).then_some(EnergyJump { time, change, energy, count: count as u64 });
-        Ok(Self { start, reached, exceeded: exceeded > 0, initial, last, largest, worst, jump })
+        Ok(Self { start, reached, exceeded: exceeded > 0, initial, last, largest, asked, worst, jump })
     }
 }

@@ -20,3 +20,4 @@ mod text;
 mod texts;
 mod thrust;
 mod tools;
+mod units;

@@ -142,7 +142,8 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
         let Self { system, rule, start, t0, h } = *self;
         let time = |tau: Lanes| tau * h + t0;
         let (mut path, mut points, mut nodes) = (EnergyPath::rest(), PathPoints::at(start), PathPoints::at(start));
-        let mut convergence = FixedPoint::<3, N>::new(Self::LIMIT);
+        let mut convergence =
+            FixedPoint::<3, N>::new(Self::LIMIT).in_units([1.0, h.abs() * start.largest_inverse_mass(), 1.0]);
         loop {
             let before = points.xi;
             points.follow(&path, rule.integrals_to_points(), start, h);

@@ -47,6 +47,12 @@ impl<const N: usize> EnergyStart<N> {
 }
 
 impl<const N: usize> EnergyStart<N> {
+    /// The largest entry of the inverse mass matrix.
+    #[inline(always)]
+    pub(super) fn largest_inverse_mass(&self) -> f64 {
+        largest(self.inverse_mass.as_flattened())
+    }
+
     /// Takes the inverse mass matrix at the place to which the velocity leads in half the step: if masses double within the step,
     /// corrections with the mass matrix of the beginning grow. `None` if the matrix is singular.
     #[cold]

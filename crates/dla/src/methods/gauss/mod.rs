@@ -256,7 +256,7 @@ impl Gauss {
     ) -> Result<u32, StepError> {
         // With secants an iteration converges soon or not at all.
         let limit = if secants.is_some() { self.max_iterations.min(24) } else { self.max_iterations };
-        let mut convergence = FixedPoint::<2, N>::new(limit);
+        let mut convergence = FixedPoint::<2, N>::new(limit).in_units([1.0, h.abs()]);
         loop {
             let before = secants.as_ref().map(|_| stages.numbers(self.stages()));
             let mut seen = [[(0.0f64, 0.0f64); N]; 2];

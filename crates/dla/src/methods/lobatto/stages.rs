@@ -5,7 +5,7 @@ use crate::branch;
 use crate::convergence::{most_roundings, rounding_of_place};
 use crate::newton::BlockEquations;
 use crate::{Mechanics, State, StepError};
-use lagrangian::linear::Singular;
+use lagrangian::linear::{Singular, larger};
 use lagrangian::{Rounded, Saddle, from_fn, mapped};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
@@ -134,11 +134,28 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         branch::unfollowed([&derivatives(v), &derivatives(&[v0; S])])
     }
 
+    /// The units of the multipliers: about the inverse diagonal of `A M^-1 A'`, so that equations of light bodies are as far from singular as
+    /// those of heavy ones.
+    fn units(at: &[LinearisedStage<N, M>; S]) -> [f64; M] {
+        let start = &at[0];
+        from_fn(|k| {
+            let mobility = |x: usize| match start.p_v[x][x] {
+                0.0 => 0.0,
+                mass => start.a[k][x] * start.a[k][x] / mass,
+            };
+            match (0..N).fold(0.0, |most, x| larger(most, mobility(x))) {
+                0.0 => 1.0,
+                largest => largest.recip(),
+            }
+        })
+    }
+
     /// The linear equations of Newton's method.
     #[inline]
     fn equations(&self, points: &[StagePoint<N, M>; S], at: &[LinearisedStage<N, M>; S], dense: &mut Dense<N, M, S>) {
         let LobattoTables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
+        let units = Self::units(at);
         // p_i - p0 - sum_j a_hat_ij w_j = 0
         for i in 0..S {
             for x in 0..N {
@@ -159,7 +176,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
                 }
                 for j in 0..S - 1 {
                     for k in 0..M {
-                        row[Dense::<N, M, S>::multiplier(j, k)] = -a_hat[i][j] * at[j].a[k][x];
+                        row[Dense::<N, M, S>::multiplier(j, k)] = -a_hat[i][j] * at[j].a[k][x] * units[k];
                     }
                 }
             }
@@ -214,11 +231,12 @@ impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for Lo
         let mut dense = Dense::zero();
         self.equations(&points, &at, &mut dense);
         dense.solve()?;
+        let units = Self::units(&at);
         let solution = dense.right();
         self.before = self.impulses;
         for j in 0..S - 1 {
             for k in 0..M {
-                self.impulses[j][k] += solution[Dense::<N, M, S>::multiplier(j, k)];
+                self.impulses[j][k] += solution[Dense::<N, M, S>::multiplier(j, k)] * units[k];
             }
         }
         Ok(from_fn(|j| from_fn(|i| solution[Dense::<N, M, S>::velocity(j, i)])))

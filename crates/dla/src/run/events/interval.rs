@@ -54,12 +54,13 @@ impl EventInterval<'_> {
             let known: Vec<_> = states.iter().map(at_sample).collect();
             let between = self.between(event, &states, &known, parts);
             let untold = matches!(between, Between::Untold);
-            let (exact, parts, known) = match between {
-                Between::Finer(finer, values) => (false, finer, values),
-                Between::Told | Between::Untold => (true, parts, known),
-            };
             let counts = |rising| event.counts(rising);
-            let Zeros { zeros, incomplete: missing } = zeros_by(&known, exact, tolerance / length, counts, value);
+            let tolerance = tolerance / length;
+            let search = |known: &[(f64, f64)], exact| zeros_by(known, exact, tolerance, counts, value);
+            let (parts, Zeros { zeros, incomplete: missing }) = match between {
+                Between::Finer(finer, values) => (finer, search(&values, false).or(|| search(&known, true))),
+                Between::Told | Between::Untold => (parts, search(&known, true)),
+            };
             incomplete += u64::from(missing || untold);
             for Zero { at, within, rising } in zeros {
                 let Some(state) = self.state(at) else { continue };

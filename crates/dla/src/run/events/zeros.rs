@@ -21,6 +21,17 @@ pub struct Zeros {
     pub incomplete: bool,
 }
 
+impl Zeros {
+    /// These, or if some are missing the `others`, should they be more.
+    pub(super) fn or(self, others: impl FnOnce() -> Self) -> Self {
+        if !self.incomplete {
+            return self;
+        }
+        let others = others();
+        if others.zeros.len() > self.zeros.len() { others } else { self }
+    }
+}
+
 /// The crossings of a function within a step, at parts of it from 0 to 1. `known` has pairs of a part and a value in order, a little beyond
 /// both ends; a missing value is NaN. Crossings in a direction that does not count are left out.
 ///

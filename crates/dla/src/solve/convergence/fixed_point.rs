@@ -1,7 +1,8 @@
 use super::tolerances::{CYCLES, GROWTH_OF_FIXED_POINT, QUIET, SLIGHT_OF_FIXED_POINT, STALLS, UNBIASED};
 use crate::{History, NewtonError};
+use lagrangian::{from_fn, mapped};
 
-/// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components with one unit each.
+/// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components.
 ///
 /// A component has converged when linear convergence, at the rate of the last two iterations, predicts a next change of less than
 /// [`UNBIASED`] of it; or when its changes have twice not shrunk and are rounding: slight beside the largest component, or a few roundings
@@ -9,6 +10,8 @@ use crate::{History, NewtonError};
 #[derive(Debug)]
 pub struct FixedPoint<const G: usize, const N: usize> {
     components: [[Component; N]; G],
+    /// Factors that take the groups to the unit of the first.
+    units: [f64; G],
     /// The round-off of every component, once it has been asked for.
     noise: Option<[[f64; N]; G]>,
     /// The largest change of the last iteration.
@@ -46,6 +49,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         let component = Component { last: f64::INFINITY, before_last: f64::INFINITY, stalls: 0 };
         Self {
             components: [[component; N]; G],
+            units: [1.0; G],
             noise: None,
             last: f64::INFINITY,
             least: f64::INFINITY,
@@ -70,6 +74,14 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
     #[inline(always)]
     pub fn to(mut self, left: f64) -> Self {
         self.left = left;
+        self
+    }
+
+    /// The test of groups that have different units: factors take each to the unit of the first, in which components are compared.
+    #[must_use]
+    #[inline(always)]
+    pub fn in_units(mut self, units: [f64; G]) -> Self {
+        self.units = units;
         self
     }
 
@@ -98,6 +110,8 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         let iteration = self.iteration;
         let (mut settled, mut asks, mut worst, mut noisiest) = (true, false, 0.0_f64, 0.0_f64);
         self.rounding = 0.0;
+        let groups: [_; G] =
+            from_fn(|g| mapped(&groups[g], |(change, size)| (change * self.units[g], size * self.units[g])));
         // A group whose true value is zero has no size of its own to diverge from.
         let all = groups.iter().flatten().fold(0.0, |most: f64, (_, size)| most.max(*size));
         for (g, (group, components)) in groups.iter().zip(&mut self.components).enumerate() {
@@ -105,7 +119,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 if !(change.is_finite() && size.is_finite()) {
                     return Err(NewtonError::NotFinite { iteration, history: self.history });
                 }
-                let known = self.noise.as_ref().map_or(0.0, |noise| CYCLES * noise[g][i]);
+                let known = self.noise.as_ref().map_or(0.0, |noise| CYCLES * noise[g][i] * self.units[g]);
                 let rounding = least.max(SLIGHT_OF_FIXED_POINT * all).max(known).max(f64::MIN_POSITIVE);
                 let (ends, stalls) = component.settles(change, size, rounding, self.left);
                 settled &= ends;

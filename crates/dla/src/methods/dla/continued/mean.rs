@@ -1,6 +1,6 @@
 use super::{FoundMean, are_met, ends, searched, sup, with_reaction};
 use crate::convergence::CorrectionKind;
-use crate::convergence::tolerances::SHRINKING;
+use crate::convergence::tolerances::{SHRINKING, UNBIASED};
 use crate::derivatives::{LEAST, StepDerivatives};
 use crate::dla::{Dla, expected, predicted};
 use crate::increment::{Departure, Increment};
@@ -152,7 +152,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Predicted<'_, D, N
         let [v] = all;
         // If the equations at `v` are met, the momenta at the end are the sum of the momenta of both ends and the reaction. The last
         // correction changes that sum in proportion to its size, as the one before did.
-        let both = match self.change * self.size > f64::EPSILON * self.before * sup(&self.both) {
+        let both = match self.change * self.size > UNBIASED * self.before * sup(&self.both) {
             true => ends(&self.increment.momenta(&v)),
             false => self.both,
         };
