@@ -133,6 +133,35 @@ fn effects_have_columns_of_their_own() {
     assert!((last[energy] - first[energy] - last[work]).abs() <= error, "{last:?}");
 }
 
+/// Whatever does work has a column of its power, nothing else has one, and together the powers are the rate of the energy.
+#[test]
+fn powers_are_the_rate_of_the_energy() {
+    let folder = folder();
+    let servo = "[[effects]]\nkind = \"servo\"\nspeed = { amplitude = 0.5, frequency = 1.0 }\n";
+    let table = "[[effects]]\nkind = \"turntable\"\nrate = 0.3\n";
+    folder.write("guided.toml", format!("{}{servo}{table}", SCENE.replace("speed = -1.0", "speed = 0.5")));
+    for (scene, powers) in [
+        ("turntable", "turntable"),
+        ("shaker", "moving_mass"),
+        ("planimeter", "tracer"),
+        ("thrust-well", "thrust"),
+        ("braking", "drag"),
+        ("guided.toml", "turntable,servo"),
+    ] {
+        folder.done(&format!("run {scene} --method gauss8 --step 0.01 --duration 1 --out run.csv --force"));
+        let (names, rows) = csv(&folder.read("run.csv"));
+        let of_powers: Vec<&str> = names.iter().filter_map(|name| name.strip_prefix("power_")).collect();
+        assert_eq!(of_powers.join(","), powers, "{scene}");
+        let energy = names.iter().position(|name| name == "energy").unwrap();
+        let power = |row: &[f64]| row[names.len() - of_powers.len()..].iter().sum::<f64>();
+        // Simpson's rule on pairs of steps, of order 4.
+        let pairs = rows.windows(3).step_by(2);
+        let work: f64 = pairs.map(|at| 0.01 / 3.0 * (power(&at[0]) + 4.0 * power(&at[1]) + power(&at[2]))).sum();
+        let gained = rows[rows.len() - 1][energy] - rows[0][energy];
+        assert!((work - gained).abs() < 1e-8 && gained.abs() > 1e-4, "{scene}: {work:e} {gained:e}");
+    }
+}
+
 #[test]
 fn other_endings_are_refused() {
     let folder = folder();

@@ -27,6 +27,16 @@ fn a_setting_counts_as_the_line_of_a_file_does() {
     folder.refused("run fast.toml --set mass", &["--set", "KEY=VALUE"]);
 }
 
+/// A file that is no TOML is refused at its own line, whatever is set.
+#[test]
+fn settings_do_not_hide_a_broken_file() {
+    let folder = Folder::new();
+    folder.write("broken.toml", SCENE.replace("offset = 0.5", "offset = = 0.5"));
+    let plain = folder.line("run broken.toml");
+    plain.assert_refused("broken", &["--> broken.toml:", "offset = = 0.5"]);
+    assert_eq!(folder.line("run broken.toml --set run.step=0.1").stderr, plain.stderr);
+}
+
 #[test]
 fn every_command_that_reads_a_scene_takes_settings() {
     let folder = Folder::new();
