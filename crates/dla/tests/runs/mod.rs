@@ -2,6 +2,7 @@
 
 mod checkpoint;
 pub(crate) mod counter_example;
+mod crossings;
 mod dense;
 pub(crate) mod events;
 pub(crate) mod failures;

@@ -54,7 +54,7 @@ pub struct Energies {
     /// The error at the last node, and the largest one (J).
     last: f64,
     largest: f64,
-    /// The error at which the kinetic energy was last asked for since errors had doubled (J).
+    /// The error that was twice the one noted here before, or more, when the kinetic energy was last asked for (J).
     asked: f64,
     jump: Option<EnergyJump>,
     /// The largest change of a step that jumps (J).
@@ -82,20 +82,17 @@ impl Energies {
         let error = error.abs();
         self.largest = larger(self.largest, error);
         // The rounding of a motion that runs away grows with its kinetic energy.
-        if error > 2.0 * self.asked {
-            self.asked = error;
-            let kinetic = kinetic().abs();
-            if error < 0.5 * kinetic {
-                self.reached = larger(self.reached, kinetic);
-            }
-        }
-        if error <= larger(self.start, self.reached) {
+        let (doubled, small) = (error > 2.0 * self.asked, error <= larger(self.start, self.reached));
+        if small && !doubled {
             return;
+        }
+        if doubled {
+            self.asked = error;
         }
         let kinetic = kinetic().abs();
         if error < 0.5 * kinetic {
             self.reached = larger(self.reached, kinetic);
-        } else {
+        } else if !small {
             let beyond = error > OF_THE_MOTION * kinetic;
             // Also if one of them is not a number.
             self.exceeded |= !beyond || !error.is_finite();

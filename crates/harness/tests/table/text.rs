@@ -10,7 +10,7 @@ use std::sync::Arc;
 use text::{TextMechanics, TextModel, TextStart, Words};
 
 /// The system of a text, from this start.
-fn system(words: &Words, start: &Point) -> TextMechanics {
+pub fn system(words: &Words, start: &Point) -> TextMechanics {
     let start = TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() };
     TextMechanics::new(&Arc::new(TextModel::new(words).unwrap()), &start).unwrap()
 }
@@ -23,7 +23,7 @@ fn filled(system: &dyn Mechanism, point: &Point) -> Point {
 }
 
 /// Where a run of the text ends.
-fn end(system: &dyn Mechanism, method: &Method, start: &Point, schedule: &Schedule) -> Result<Point, RunError> {
+pub fn end(system: &dyn Mechanism, method: &Method, start: &Point, schedule: &Schedule) -> Result<Point, RunError> {
     let Point { mut q, mut v } = case::end(system, method, &filled(system, start), schedule, &mut |_| {})?;
     [&mut q, &mut v].into_iter().for_each(|x| x.truncate(start.q.len()));
     Ok(Point { q, v })

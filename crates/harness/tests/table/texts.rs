@@ -45,7 +45,7 @@ const fn sleigh(parameters: &'static [(&'static str, f64)]) -> Text {
 const SLEIGH: Text = sleigh(&[("m", 1.3), ("I", 0.8), ("a", 0.4)]);
 
 /// A sleigh at its centre of mass, in a potential.
-fn in_field(coordinates: &'static [&'static str], potential: &str) -> Words {
+pub fn in_field(coordinates: &'static [&'static str], potential: &str) -> Words {
     let mut words = Text {
         coordinates,
         parameters: SLEIGH.parameters,

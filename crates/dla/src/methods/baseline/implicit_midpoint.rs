@@ -47,7 +47,7 @@ impl ImplicitMidpoint {
             let seen = lagrangian::from_fn(|i| ((next[i] - a[i]).abs(), next[i].abs()));
             a = next;
             let noise = || [system.motion_rounding(t0, q0, v0).map_or([0.0; N], |rounding| rounding.acceleration)];
-            let settled = convergence.see([seen], 0.0, noise);
+            let settled = convergence.see([seen], noise);
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 return Ok((a, iterations));

@@ -172,7 +172,7 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
                 compared(&points.xi, &before, rule.stages..rule.stages + 1),
             ];
             path = EnergyPath { q_rate, pi_rate };
-            let settled = convergence.see(changes, 0.0, || start.rounding(system, t0, h));
+            let settled = convergence.see(changes, || start.rounding(system, t0, h));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);

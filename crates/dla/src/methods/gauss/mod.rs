@@ -278,8 +278,7 @@ impl Gauss {
                 }
                 (stages.velocity[i], stages.acceleration[i]) = (slope.velocity, slope.acceleration);
             }
-            let settled =
-                convergence.see(seen, 0.0, || system.reduced_rounding(t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
+            let settled = convergence.see(seen, || system.reduced_rounding(t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 return Ok(iterations);

@@ -134,8 +134,9 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         branch::unfollowed([&derivatives(v), &derivatives(&[v0; S])])
     }
 
-    /// The units of the multipliers: about the inverse diagonal of `A M^-1 A'`, so that equations of light bodies are as far from singular as
-    /// those of heavy ones.
+    /// The units of the multipliers: about the inverse diagonal of `A M^-1 A'`. In them the equations of light and of heavy bodies are
+    /// equally far from singular.
+    #[inline]
     fn units(at: &[LinearisedStage<N, M>; S]) -> [f64; M] {
         let start = &at[0];
         from_fn(|k| {
@@ -150,12 +151,17 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         })
     }
 
-    /// The linear equations of Newton's method.
+    /// The linear equations of Newton's method, the multipliers in these units.
     #[inline]
-    fn equations(&self, points: &[StagePoint<N, M>; S], at: &[LinearisedStage<N, M>; S], dense: &mut Dense<N, M, S>) {
+    fn equations(
+        &self,
+        points: &[StagePoint<N, M>; S],
+        at: &[LinearisedStage<N, M>; S],
+        units: &[f64; M],
+        dense: &mut Dense<N, M, S>,
+    ) {
         let LobattoTables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
-        let units = Self::units(at);
         // p_i - p0 - sum_j a_hat_ij w_j = 0
         for i in 0..S {
             for x in 0..N {
@@ -229,9 +235,9 @@ impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for Lo
         let at = mapped(&points, |point| point.linearised(self.system, self.h));
         // Filled in place: a second matrix would be on the stack beside it.
         let mut dense = Dense::zero();
-        self.equations(&points, &at, &mut dense);
-        dense.solve()?;
         let units = Self::units(&at);
+        self.equations(&points, &at, &units, &mut dense);
+        dense.solve()?;
         let solution = dense.right();
         self.before = self.impulses;
         for j in 0..S - 1 {

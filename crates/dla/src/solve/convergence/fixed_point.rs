@@ -12,7 +12,7 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     components: [[Component; N]; G],
     /// Factors that take the groups to the unit of the first.
     units: [f64; G],
-    /// The round-off of every component, once it has been asked for.
+    /// The round-off of every component in the unit of the first group, once it has been asked for.
     noise: Option<[[f64; N]; G]>,
     /// The largest change of the last iteration.
     last: f64,
@@ -94,8 +94,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
     }
 
     /// Tests the largest changes and sizes of the components after an iteration; the iteration's number if it was the last. `noise`
-    /// gives the round-off of the components, `2^-53` times the sums of the sizes of their terms; `least` is the round-off that all
-    /// have.
+    /// gives the round-off of the components, `2^-53` times the sums of the sizes of their terms.
     ///
     /// # Errors
     /// [`NewtonError`] if the iteration does not converge.
@@ -103,15 +102,14 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
     pub fn see(
         &mut self,
         groups: [[(f64, f64); N]; G],
-        least: f64,
         noise: impl FnOnce() -> [[f64; N]; G],
     ) -> Result<Option<u32>, NewtonError> {
         self.iteration += 1;
         let iteration = self.iteration;
         let (mut settled, mut asks, mut worst, mut noisiest) = (true, false, 0.0_f64, 0.0_f64);
         self.rounding = 0.0;
-        let groups: [_; G] =
-            from_fn(|g| mapped(&groups[g], |(change, size)| (change * self.units[g], size * self.units[g])));
+        let units = self.units;
+        let groups: [_; G] = from_fn(|g| mapped(&groups[g], |(change, size)| (change * units[g], size * units[g])));
         // A group whose true value is zero has no size of its own to diverge from.
         let all = groups.iter().flatten().fold(0.0, |most: f64, (_, size)| most.max(*size));
         for (g, (group, components)) in groups.iter().zip(&mut self.components).enumerate() {
@@ -119,8 +117,8 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 if !(change.is_finite() && size.is_finite()) {
                     return Err(NewtonError::NotFinite { iteration, history: self.history });
                 }
-                let known = self.noise.as_ref().map_or(0.0, |noise| CYCLES * noise[g][i] * self.units[g]);
-                let rounding = least.max(SLIGHT_OF_FIXED_POINT * all).max(known).max(f64::MIN_POSITIVE);
+                let known = self.noise.as_ref().map_or(0.0, |noise| CYCLES * noise[g][i]);
+                let rounding = (SLIGHT_OF_FIXED_POINT * all).max(known).max(f64::MIN_POSITIVE);
                 let (ends, stalls) = component.settles(change, size, rounding, self.left);
                 settled &= ends;
                 asks |= stalls && !ends && change > rounding;
@@ -142,7 +140,8 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         // Changes that oscillate may grow for a while, up to this.
         let grown = GROWTH_OF_FIXED_POINT * self.least.max(noisiest);
         if self.noise.is_none() && (asks || worst > grown) {
-            self.noise = Some(noise());
+            let noise = noise();
+            self.noise = Some(from_fn(|g| mapped(&noise[g], |x| x * units[g])));
         } else if worst > grown {
             let (correction, before) = (worst / all, self.least / all);
             return Err(NewtonError::Diverged { iteration, correction, before, history });
@@ -181,7 +180,7 @@ mod tests {
         let mut k = 0;
         loop {
             k += 1;
-            if let Some(made) = fixed_point.see([[(changes(k), 1.0)]], 0.0, || [[noise]])? {
+            if let Some(made) = fixed_point.see([[(changes(k), 1.0)]], || [[noise]])? {
                 return Ok(made);
             }
         }
