@@ -15,7 +15,7 @@ use std::process::{Command, ExitCode};
 /// What counts as the same: the issue of inlining decisions, not of terms.
 const SAME: f64 = 0.02;
 
-/// Instructions of this program that does a case so many times; `None` where valgrind cannot say.
+/// Instructions of this program that repeats a case `times` times; `None` where valgrind cannot say.
 fn count(case: usize, times: u64) -> Option<u64> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])

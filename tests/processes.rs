@@ -56,7 +56,7 @@ pub fn signals() -> impl Iterator<Item = &'static str> {
     ["-INT", "-TERM", "-HUP"].into_iter().filter(|signal| *signal != "-HUP" || hangs_up())
 }
 
-/// Waits until a file has so many bytes.
+/// Waits until a file has `bytes` bytes.
 pub fn wait_for(folder: &Folder, name: &str, bytes: u64) {
     while fs::metadata(folder.join(name)).map_or(0, |metadata| metadata.len()) < bytes {
         std::thread::sleep(Duration::from_millis(1));

@@ -10,7 +10,7 @@ use std::hint::black_box;
 const DLA: &str = "effects, dla";
 const GAUSS: &str = "effects, gauss8";
 
-/// A step with every effect alone and with several, as types and from a scene; what is absent must cost nothing.
+/// A step with every effect alone and with several, as types and from a scene; an absent effect must cost nothing.
 ///
 /// The general midpoint step: its closed form knows no effects.
 pub(super) fn cases() -> Vec<Case> {

@@ -12,7 +12,7 @@ pub(crate) struct Case {
     pub(crate) group: &'static str,
     /// Its name in the group.
     pub(crate) name: String,
-    /// Does it so many times.
+    /// Repeats the case this number of times.
     pub(crate) run: Box<dyn Fn(u64)>,
     /// The case of the same group that it must cost the same as.
     pub(crate) same: Option<&'static str>,

@@ -35,7 +35,7 @@ const QUICK: [&str; 8] = [
     "noslip run turnaround",
 ];
 
-/// Commands that are for other programs: what is built, installed or measured is not done by a test.
+/// Commands for other programs: a test does not build, install or measure.
 const OTHERS: [&str; 17] = [
     "cargo build --release",
     "cargo run --release",

@@ -183,8 +183,8 @@ fn what_comes_to_rest_goes_on_at_length() {
     rests("--duration 400", "--duration 150", 100.0);
 }
 
-/// Runs, the work that is done in them (J), how far it may be off, and the error of the energy. The works are those of steps a twentieth as
-/// long, and of other methods; the error of the energy is that of the motion.
+/// Runs, the work that is done in them (J), how far the work may be off, and the error of the energy. The works come from steps a twentieth as
+/// long, and from other methods; the error of the energy is the error of the motion.
 const WORKS: [(&str, f64, f64, f64); 8] = [
     ("braking --method dop853 --step 5", -2.056_231_320_936_5, 1e-12, 1e-12),
     ("braking --method gauss-adaptive --step 5", -2.056_231_320_936_5, 1e-12, 1e-12),

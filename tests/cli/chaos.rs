@@ -207,7 +207,7 @@ fn a_map_does_not_depend_on_the_threads_in_full() {
     maps("--duration 40");
 }
 
-/// Sections of so many starts and so long (s), with at least so many points of each start; and of `short` seconds.
+/// Sections of `starts` starts over `duration` s, with at least `least` points of each start; and of `short` seconds.
 fn points(starts: u32, duration: f64, least: usize, short: f64) {
     let folder = Folder::new();
     let line = format!("section bowl --step 0.1 --plane center_y=0.25 --starts {starts} --duration {duration}");
@@ -297,7 +297,7 @@ fn a_section_has_the_direction_that_was_asked_for() {
     assert!(outcome.code == 0 && outcome.stderr.is_empty(), "{outcome:?}");
 }
 
-/// A section of one plane over so long (s), and one at each period, of which there are so many.
+/// A section of one plane over `duration` s, and one at each of `periods` periods.
 fn sections_in_time(duration: f64, periods: usize) {
     let folder = Folder::new();
     let outcome = folder.line(&format!("section shaker --plane speed=0 --starts 1 --duration {duration}"));
@@ -364,7 +364,7 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(folder.names(), ["jumps.toml"]);
 }
 
-/// A step that is too long ends the run: what is known is shown, and the exit code is 1.
+/// A step that is too long ends the run: the known part is shown, and the exit code is 1.
 #[test]
 fn a_run_that_fails_says_so() {
     let folder = Folder::new();

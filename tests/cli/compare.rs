@@ -341,7 +341,7 @@ fn interrupted(folder: &Folder, line: &str, sign_of_life: &str) -> crate::progra
     outcome
 }
 
-/// With a checkpoint after so many steps.
+/// With a checkpoint after every `every` steps.
 #[cfg(unix)]
 fn interrupted_comparison(every: u64) {
     let folder = Folder::new();
@@ -374,7 +374,7 @@ fn ctrl_c_keeps_what_is_done_and_the_rest_is_resumed_at_length() {
     interrupted_comparison(1_000_000);
 }
 
-/// With a checkpoint after so many steps, and a row after each tenth of them.
+/// With a checkpoint after every `every` steps, and a row after each tenth of them.
 #[cfg(unix)]
 fn interrupted_run(every: u64) {
     let folder = Folder::new();

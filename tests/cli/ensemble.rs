@@ -62,7 +62,7 @@ fn rows_are_in_the_spool_as_soon_as_they_are_done() {
     }
 }
 
-/// The sweep with so many members.
+/// The sweep with `members` members.
 fn sweep(members: u32) -> String {
     SWEEP.replace("count = 500", &format!("count = {members}"))
 }

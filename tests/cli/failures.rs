@@ -147,7 +147,7 @@ struct Case {
     turn_rate: f64,
 }
 
-/// Scenes from harmless to hopeless, of so many steps at most.
+/// Scenes from harmless to hopeless, of `most` steps at most.
 fn cases(most: u32) -> impl Strategy<Value = Case> {
     let turn_rate = prop_oneof![-1.0..1.0, -300.0..300.0];
     let stiffness = prop::array::uniform2(-4.0..4.0);

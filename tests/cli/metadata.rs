@@ -3,7 +3,7 @@
 use crate::program::{Folder, SCENE};
 use serde_json::Value;
 
-/// The document beside a file, whose columns are those of the header.
+/// The document beside a file, with the columns of the header.
 fn beside(folder: &Folder, file: &str) -> Value {
     let document: Value = serde_json::from_str(&folder.read(&format!("{file}-metadata.json"))).unwrap();
     assert_eq!(document["@context"], "http://www.w3.org/ns/csvw");

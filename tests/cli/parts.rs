@@ -13,7 +13,7 @@ count = 501
 \"start.turn_rate\" = { uniform = [0.05, 0.3] }
 ";
 
-/// A folder with the sweep, with so many members.
+/// A folder with the sweep, with `members` members.
 fn folder(members: u32) -> Folder {
     let folder = Folder::new();
     folder.write("sweep.toml", SWEEP.replace("count = 501", &format!("count = {members}")));
@@ -146,7 +146,7 @@ fn a_damaged_part_is_made_again_and_never_merged_at_length() {
     damaged_parts(501, tries(20));
 }
 
-/// A sweep of so many members, each of so long (s).
+/// A sweep of `members` members, each of `duration` s.
 #[cfg(unix)]
 fn killed_and_shared(members: u32, duration: f64, tries: u64) {
     let folder = folder(members);

@@ -97,7 +97,7 @@ fn shown(points: &[Numbers]) -> Vec<Numbers> {
     points.iter().map(point).collect()
 }
 
-/// Runs of so long, at least so many points, and which of the two commands has a page and a diagram, too.
+/// Runs of `duration` s, at least `least` points, and which of the two commands has a page and a diagram, too.
 fn the_same_everywhere(limits: &str, least: usize, pages: &[&str]) {
     let folder = Folder::new();
     // Of another program, one point without a step and one that failed.
@@ -170,7 +170,7 @@ fn table_csv_json_page_and_plot_say_the_same_at_length() {
 struct Measured<'a> {
     methods: &'a str,
     longest: &'a str,
-    /// Those with so many points at least, over which their errors shrink to such a part.
+    /// Methods with `least` points at least, over which the error shrinks to `part`.
     ladders: &'a [&'a str],
     least: usize,
     part: f64,

@@ -18,7 +18,7 @@ fn folder() -> Folder {
     folder_of(200)
 }
 
-/// With scenes of so many seconds.
+/// With scenes of `seconds` s.
 fn folder_of(seconds: u32) -> Folder {
     let folder = Folder::new();
     let scene = format!("{}{DRAG}", SCENE.replace("duration = 2.0", &format!("duration = {seconds}.0")));
@@ -96,7 +96,7 @@ fn ended_by_a_signal_and_resumed_the_bytes_are_the_same_at_length() {
     cut_and_resumed(2000, 1000, tries(9));
 }
 
-/// Runs of so many seconds, saved after so many steps each, are ended so many times.
+/// Runs of `seconds` s, saved after every `every` steps, are ended `tries` times.
 #[cfg(unix)]
 fn cut_and_resumed(seconds: u32, every: u64, tries: u64) {
     let folder = folder_of(seconds);

@@ -372,7 +372,7 @@ fn a_negative_duration_goes_backward_in_time_at_length() {
     back_and_mirrored(&["turnaround", "bowl"], &methods, 10.0);
 }
 
-/// Backward in time the motion is that of the sleigh with its velocities reversed, where no force depends on time or velocity.
+/// Backward in time the sleigh moves as forward with its velocities reversed, where no force depends on time or velocity.
 fn back_and_mirrored(scenes: &[&str], methods: &[&str], duration: f64) {
     let folder = Folder::new();
     let end = |line: &str| folder.json(&format!("run {line} --step 0.05 --json"))["final"].clone();

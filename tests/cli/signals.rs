@@ -81,7 +81,7 @@ fn maps_have_the_starts_that_are_done_at_length() {
     map(all(), 300, 20);
 }
 
-/// A map of so many starts along each axis, of so many seconds each.
+/// A map of `count` starts along each axis, of `duration` s each.
 fn map((signals, waits): (Vec<&str>, [Duration; 3]), count: usize, duration: u32) {
     let folder = Folder::new();
     let line = format!(
@@ -108,7 +108,7 @@ fn sections_have_the_starts_that_are_done_at_length() {
     section(all(), 50_000, 1);
 }
 
-/// So many starts of so many seconds each.
+/// `count` starts of `duration` s each.
 fn section((signals, waits): (Vec<&str>, [Duration; 3]), count: usize, duration: u32) {
     let folder = Folder::new();
     let line =
@@ -231,7 +231,7 @@ fn a_run_that_cannot_be_saved_is_an_error() {
     assert!(told.contains("error: cannot write saves/t.save"), "{told}");
 }
 
-/// A wrapper and a terminal may each send the signal, one shortly after the other: so many times each of some gaps (ms).
+/// A wrapper and a terminal may each send the signal, one shortly after the other: each of the gaps (ms) is tried `tries` times.
 fn two_signals(gaps: &[f64], tries: u64) {
     let folder = Folder::new();
     folder.write("long.toml", SCENE.replace("duration = 2.0", "duration = 2000000.0"));

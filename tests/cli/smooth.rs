@@ -73,7 +73,7 @@ fn smooth_motions_are_not_refused_at_length() {
     ends(&LONG);
 }
 
-/// Where a train rests all corrections are the rounding of large reactions, and may grow by chance: it stays where it is.
+/// Where a train rests all corrections are the rounding of large reactions, and may grow by chance: it keeps its place.
 fn rests(lines: &[&str]) {
     for line in lines {
         let end = run(&format!("train-rests.toml --method {line}"));

@@ -20,7 +20,7 @@ fn a_step_that_is_refused_is_made_in_parts_in_full() {
     made_in_parts(&["dla", "dla4", "gauss8", "energy4"], |method| format!("--method {method} --step 0.0029"));
 }
 
-/// The end is that of a run with short steps.
+/// The run ends at the same place as with short steps.
 fn made_in_parts(methods: &[&str], short: impl Fn(&str) -> String) {
     let folder = Folder::new();
     folder.write("large.toml", FAILING);

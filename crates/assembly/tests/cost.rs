@@ -55,7 +55,7 @@ fn evaluations(blades: usize) -> (f64, u32) {
     (asked.load(Relaxed) as f64 / (f64::from(iterations) * blades as f64), iterations)
 }
 
-/// Bytes of a method after so many steps.
+/// Bytes of a method after `steps` steps.
 fn memory(blades: usize, solver: Solver, steps: u32) -> f64 {
     let train = train(blades);
     let mut state = bent(&train);
@@ -87,7 +87,7 @@ fn measures() -> bool {
     std::env::var_os("NOSLIP_MEASURE").is_some_and(|value| value == "1")
 }
 
-/// The processor time of this thread (s): that of the clock on the wall is of all who work here.
+/// The processor time of this thread (s). The clock on the wall also counts the work of others.
 fn seconds() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

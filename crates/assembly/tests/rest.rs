@@ -31,7 +31,7 @@ fn run(train: &Train, method: &mut dyn AssemblyMethod, name: &str, state: &mut A
     }
 }
 
-/// By every method a damped train comes to rest, and stays there: what is left of its velocities is the rounding of its forces.
+/// By every method a damped train comes to rest, and stays there: its remaining velocities are the rounding of its forces.
 #[test]
 #[ignore = "slow"]
 fn a_damped_train_comes_to_rest() {
@@ -63,7 +63,7 @@ fn a_train_at_rest_stays_in_full() {
     stays_at_rest(100);
 }
 
-/// Without forces a train at rest stays where it is, to the last bit.
+/// Without forces a train at rest keeps its place to the last bit.
 fn stays_at_rest(steps: u32) {
     let train = train(3);
     for (name, mut method) in methods(&train) {

@@ -4,7 +4,7 @@ use lagrangian::With;
 use sleigh::effects::{Bowl, Drag, Hill, Hills};
 use sleigh::{Sleigh, SleighState};
 
-/// A train of so many blades in all, with hitches behind the axles.
+/// A train of `blades` blades, with hitches behind the axles.
 pub(crate) fn train(blades: usize) -> Train {
     let trailer = Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8).unwrap();
     Train::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), vec![trailer; blades - 1], |trailer| trailer.sleigh).unwrap()

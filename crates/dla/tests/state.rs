@@ -65,7 +65,7 @@ fn sums_are_compensated_in_full() {
     compensated(10_000_000, 1e6);
 }
 
-/// The naive sum is off by so many units in the last place.
+/// The error of the naive sum in units of the last place.
 fn compensated(terms: u32, naive_ulps: f64) {
     let (mut state, mut naive) = (State::new([0.0, 3.0], [0.0; 2], [false; 2]), 0.0f64);
     for _ in 0..terms {
@@ -213,7 +213,7 @@ fn angles_beyond_counting_are_wrapped() {
     }
 }
 
-/// Increments along a polynomial are extrapolated to rounding from as many as determine it, up to seven; those of other steps forgotten.
+/// Increments along a polynomial are extrapolated to rounding from as many as determine it, up to seven; increments of other steps are forgotten.
 #[test]
 fn the_next_increment_is_expected() {
     let mut state = State::new([0.0; 2], [0.0; 2], [false; 2]);

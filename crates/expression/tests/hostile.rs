@@ -166,7 +166,7 @@ fn texts_that_are_nearly_too_long() {
     long(500);
 }
 
-/// Texts of so many terms, and one that is longer than a text may be.
+/// Texts of `n` terms, and one that is longer than a text may be.
 fn long(n: usize) {
     let many = |term: &dyn Fn(usize) -> String| (0..n).map(term).collect::<Vec<_>>();
     assert_eq!(everything(&many(&|_| "x".to_owned()).join("+")), Ok(()));

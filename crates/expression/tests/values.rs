@@ -14,7 +14,7 @@ fn evaluated<S: Scalar>(tape: &Tape, inputs: &[S]) -> Vec<S> {
     outputs
 }
 
-/// The graph of a text and its expression; none where it divides by zero, whatever the variables are.
+/// The graph of a text and its expression; `None` if the text divides by zero, whatever the variables are.
 fn graph(source: &str) -> Option<(Graph, expression::Expression)> {
     let mut graph = Graph::new();
     let variables = variables(&mut graph);
@@ -41,7 +41,7 @@ fn tape_has_the_value(source: &str, x: [f64; 4]) {
     assert!(agree(direct, computed), "{source} at {x:?}: {direct:?}, {computed:?} by {}", text(&graph, e));
 }
 
-/// First and second derivatives, with those of dual numbers on the text, ours with bounds and those of num-dual.
+/// First and second derivatives of the graph, beside two kinds of dual numbers on the text: ours with bounds, and num-dual.
 fn derivatives_are_those_of_dual_numbers(source: &str, x: [f64; 4]) {
     let Some((mut graph, e)) = graph(source) else { return };
     let gradient = graph.gradient(e, &ALL);
@@ -167,7 +167,7 @@ fn known_values() {
     }
 }
 
-/// At corners derivatives are the means of both sides, as those of dual numbers are.
+/// At corners derivatives are the means of both sides, as with dual numbers.
 #[test]
 fn corners() {
     for (source, expected) in [

@@ -79,7 +79,7 @@ fn of_one_number() {
     assert_eq!((nested.re.eps, nested.eps[0].re, nested.eps[0].eps), ([1.0], 1.0, [0.0]));
 }
 
-/// Where two numbers are equal, the mean of both; and what is not a number is not hidden.
+/// Where two numbers are equal, the mean of both; and not-a-number is not hidden.
 #[test]
 fn of_two_numbers() {
     let (value, slope, curvature) = parts!(|x, y| (x * x).min(y * 2.0); 2.0, 2.0);
@@ -221,7 +221,7 @@ proptest! {
         }
     }
 
-    /// Whatever the numbers, every derivative of what is documented to be finite at its corner is finite.
+    /// Whatever the numbers, every derivative that is documented to be finite at a corner is finite.
     #[test]
     fn derivatives_are_finite(x in near_corners(), y in near_corners()) {
         let [x, y] = seeded([x, y]);

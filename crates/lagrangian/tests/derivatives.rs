@@ -84,7 +84,7 @@ proptest! {
         }
     }
 
-    /// A gradient is that of a dual number, in the variables alone or in more places; what depends on none has none.
+    /// Gradients agree with dual numbers, in the variables alone or in more places; a constant has none.
     #[test]
     fn gradients_of_every_operation(x in component(), y in component()) {
         let duals = operations(Dual::variable(x, 0), Dual::<f64, 2>::variable(y, 1));

@@ -13,7 +13,7 @@ fn end(method: &mut dyn OneStep<3, 1>) -> State<3> {
     state
 }
 
-/// The names, of methods that move the sleigh as those of the table do.
+/// The names, of methods that move the sleigh as the methods of the table do.
 macro_rules! same {
     ($($name:tt)*) => {
         [$({

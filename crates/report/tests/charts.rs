@@ -3,7 +3,7 @@
 use crate::common::texts;
 use report::{Cells, Chart, Layer, chart_svg};
 
-/// Lines, dots and cells; what is not finite, and what there is nothing of, is drawn without a panic.
+/// Lines, dots and cells; values that are not finite, and empty lists, are drawn without a panic.
 #[test]
 fn charts_are_drawn() {
     let chart = |decades: [bool; 2], layers: Vec<Layer>| {

@@ -21,7 +21,7 @@ step = 0.05
 duration = 40.0
 "#;
 
-/// A velocity in full is that of its part along the blade; on a plane that turns, the sideways part is the plane's.
+/// Of a full velocity the part along the blade counts; on a plane that turns, the sideways part is the plane's.
 #[test]
 fn a_velocity_in_full() {
     let parse = |text: &str| Scene::parse(text, "good.toml", METHODS).unwrap();

@@ -11,7 +11,7 @@ fn set(scene: &str, settings: &[&str]) -> Result<Scene, SceneError> {
     Scene::load_with(scene, &settings, &Overrides::default(), METHODS)
 }
 
-/// What is written where the key is and what is read there.
+/// The text of the key, and the value read from it.
 #[test]
 fn a_setting_is_what_the_text_would_say() {
     let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/bowl.toml")).unwrap();

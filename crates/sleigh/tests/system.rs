@@ -19,7 +19,7 @@ fn vectors() -> impl Strategy<Value = [f64; 3]> {
 }
 
 proptest! {
-    /// Also for velocities that slip, as those of an unprojected method do.
+    /// Also for velocities that slip, as with an unprojected method.
     #[test]
     fn accelerations_by_hand(sleigh in sleighs(), q in vectors(), v in vectors()) {
         let by_hand = sleigh.motion(0.0, &q, &v).unwrap();

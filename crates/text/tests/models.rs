@@ -107,7 +107,7 @@ fn same<Sys: System<N, M>, const N: usize, const M: usize, const P: usize, const
 const FAMILY: [&str; 4] = ["dla", "dla4", "lobatto3", "rk4"];
 const BASED: [&str; 8] = ["dla", "dla4", "lobatto3", "rk4", "dop853", "gauss8", "energy4", "rk4-reduced"];
 
-/// The basis of the disk is the derived one up to a factor; that of the racer is another.
+/// The basis of the disk is the derived one up to a factor; the racer has another.
 #[test]
 fn small_systems_move_as_those_of_the_library() {
     let disk_there = RollingDisk { m: 1.3, R: 0.5, I: 0.2, J: 0.1 };

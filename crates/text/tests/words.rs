@@ -29,7 +29,7 @@ fn skate() -> Words {
     }
 }
 
-/// The entry, the column and the words of what is wrong once the system was changed.
+/// The entry, the column and the words of the error once the system was changed.
 fn wrong(change: impl FnOnce(&mut Words)) -> (Entry, Option<usize>, String) {
     let mut words = skate();
     change(&mut words);
@@ -94,7 +94,7 @@ fn bases_have_their_shape() {
     assert!(matches!(error, StartError::Basis { vector: 0, constraint: 0, .. }), "{error}");
 }
 
-/// An angle is the same after a turn, and so is whatever is made of it but what is told.
+/// An angle is the same after a turn, and so are all results but the ones told.
 #[test]
 fn formulas_have_the_period_of_their_angles() {
     type Case = (fn(&mut Words), Option<Entry>);

@@ -71,7 +71,7 @@ impl<S: Scalar> Places<S> {
         Self { frame, fork, rear, joint, front, ahead, axle: mul(rolled, across), down, front_axle: mul(fork, across) }
     }
 
-    /// From the centre of the front wheel to where it touches.
+    /// From the centre of the front wheel to its point of contact.
     fn radius(&self) -> V3<S> {
         let n = self.front_axle;
         let fall = sub(constant([0.0, 0.0, 1.0]), scale(n, n[2]));

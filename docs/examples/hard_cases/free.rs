@@ -39,7 +39,7 @@ pub(crate) fn tiny_spin(program: &Program) -> Drawn {
     Ok(in_time("A spin of 1e-300 rad/s turns the sleigh around", "|w| [rad/s]", Decades, layers))
 }
 
-/// In units of the least number: what is below half of one is lost in every product.
+/// In units of the least number: less than half a unit is lost in every product.
 pub(crate) fn subnormal_spin(program: &Program) -> Drawn {
     const LEAST: f64 = 5e-324;
     const UNITS: [f64; 3] = [1.0, 30.0, 300.0];

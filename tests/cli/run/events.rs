@@ -125,7 +125,7 @@ fn events_are_saved_and_found_again_in_full() {
     events_again(&["dla", "gauss16", "dop853"], ["0.01", "6", "2.5"], 50, 20);
 }
 
-/// A run that is saved has its events too, so many in its whole duration, and goes on with those that it had in the shorter one.
+/// A saved run keeps its events, `count` in its whole duration, and goes on with the events of the shorter run.
 fn events_again(methods: &[&str], [step, long, short]: [&str; 3], every: u64, count: usize) {
     let folder = Folder::new();
     folder.write("scene.toml", TO_AND_FRO);
@@ -324,7 +324,7 @@ fn turns_are_counted_in_full() {
     events_of_turns(2, 20.0);
 }
 
-/// With its turns, a heading happens in one of them: here after so many.
+/// With its turns, a heading happens in one of them: here after `count` turns.
 fn events_of_turns(count: u32, duration: f64) {
     let folder = Folder::new();
     folder.write("circle.toml", circle_of(duration));

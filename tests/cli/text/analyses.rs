@@ -294,7 +294,7 @@ fn a_sweep_refuses_what_the_text_does_not_have() {
     assert!(failed.stderr.contains("1 of 2 members failed"), "{failed:?}");
 }
 
-/// The operations are those of the formulas: two squares, a difference and a half; a product; a product.
+/// The operations of the formulas are counted: two squares, a difference and a half; a product; a product.
 #[test]
 fn a_cost_counts_the_operations_of_the_formulas() {
     let folder = Folder::new();

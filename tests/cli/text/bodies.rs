@@ -67,7 +67,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The rates of the centre from above and of the angular velocity, by Newton and Euler: the parameters are those of the scene.
+/// The rates of the centre from above and of the angular velocity, by Newton and Euler: with the parameters of the scene.
 fn newton_euler([x, y, w1, w2, w3]: [f64; 5]) -> [f64; 5] {
     let (mass, radius, inertia, k, gravity, table) = (1.0, 0.1, 0.004, 0.8, 9.81, 0.6);
     let (spin, upright) = ([w1, w2, w3], 1.0 / (1.0 + k * k * (x * x + y * y)).sqrt());
@@ -98,7 +98,7 @@ fn a_ball_in_a_turning_bowl_keeps_its_moving_energy_at_length() {
     moving_energy("gauss16", 20.0, 0.01);
 }
 
-/// `E - Omega J` is kept where the energy is not: that changes by `change` at least. The motion is that of Newton and Euler. In a bowl at
+/// `E - Omega J` is kept where the energy is not: that changes by `change` at least. The motion agrees with Newton and Euler. In a bowl at
 /// rest the energy is kept.
 fn moving_energy(method: &str, duration: f64, change: f64) {
     let names = ["x", "y", "e1'", "e2'", "e3'", "moving", "energy", "constraint"];

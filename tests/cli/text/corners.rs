@@ -200,7 +200,7 @@ constraints = [\"(x' + fs*y')/n + 0.05*phi'\"]";
     folder.refused("check s.toml", &["`system.lagrangian`", "does not contain the rate", "do not determine it"]);
 }
 
-/// What is wrong is told where it stands: a basis, names in the head of files, lists too deep, a start.
+/// An error is told with its place in the file: a basis, names in the head of files, lists too deep, a start.
 #[test]
 fn faults_are_told_where_they_are() {
     let skate = |more: &str| {

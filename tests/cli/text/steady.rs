@@ -34,7 +34,7 @@ fn assert_flow(motion: &Value, known: &[[f64; 2]]) {
     }
 }
 
-/// That those of the map of `dla` are `exp(h z)` of the flow's `z`, but for `(h z)^3/12`, and as many.
+/// The multipliers of the map of `dla` are `exp(h z)` of the flow's `z`, but for `(h z)^3/12`, and as many.
 fn assert_map(motion: &Value, h: f64) {
     let (flow, map) = (complex(&motion["flow"]), complex(&motion["map"]));
     assert_eq!(flow.len(), map.len(), "{motion}");
@@ -131,7 +131,7 @@ fn families_of_rest_places_are_found() {
     }
 }
 
-/// Two wells and the hill between them, from a start in one of them; and what is said of the search.
+/// Two wells and the hill between them, from a start in one of them; and the words on the search.
 #[test]
 fn several_rests_are_found_from_several_places() {
     let text = format!(

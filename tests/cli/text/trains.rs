@@ -34,7 +34,7 @@ bar = 0.8
 headings = [0.1]
 ";
 
-/// The hinge is two constraints on positions; the velocity across each blade is that of the table.
+/// The hinge is two constraints on positions; the velocity across each blade agrees with the table.
 const WORDS: &str = "\
 [system]
 coordinates = { x = \"m\", y = \"m\", p = \"angle\", X = \"m\", Y = \"m\", q = \"angle\" }

@@ -109,7 +109,7 @@ impl Observer for OnConstraint {
         self.before.clone_from(node.state);
     }
 
-    /// A node has `v = u (cos th, sin th)` but for the rounding of the sine, the cosine, the two products and those of the
+    /// A node has `v = u (cos th, sin th)` but for the rounding of the sine, the cosine, the two products and the
     /// residual: four units of each component at most. Equations in coordinates leave the rounding of the largest component in
     /// all of them. The angle of `v` is that before the turns are taken off, and has the
     /// rounding of a number of its size: at most half a turn more than the step turns. Where the turns are too many to be

@@ -144,7 +144,7 @@ impl<S: Scalar> Attitude<S> {
 }
 
 impl Attitude<f64> {
-    /// Body axes along those of space.
+    /// Body axes along the axes of space.
     pub const LEVEL: Self = Self { e: [1.0, 0.0, 0.0, 0.0] };
 
     /// Turned from there by an angle (rad) about an axis of any length; not at all about none.

@@ -3,7 +3,7 @@ use lagrangian::{Scalar, System};
 /// A configuration `q` and a velocity `v`.
 pub type ModelState<const N: usize> = ([f64; N], [f64; N]);
 
-/// A system of the literature, with what is known of it.
+/// A system of the literature, with its known solutions.
 pub trait Model<const N: usize, const M: usize>: System<N, M> + Sized {
     /// A name for people.
     fn name(&self) -> &'static str;

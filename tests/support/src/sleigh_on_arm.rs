@@ -4,7 +4,7 @@ use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 /// A sleigh on a pendulum arm: a massless arm, free to turn about the origin, holds a hitch on the sleigh, ahead of its blade.
 /// A constraint on positions beside one on velocities; on a slope that falls along `x`.
 ///
-/// `q = (x, y, theta)`: the blade's contact point (m) and the heading (rad). Its path is that of the hatchet planimeter whose
+/// `q = (x, y, theta)`: the blade's contact point (m) and the heading (rad). The path is the curve of the hatchet planimeter whose
 /// tracer runs on a circle: with `psi` the heading relative to the arm's angle `phi`, `dpsi/dphi = (l/d) cos(psi) - 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SleighOnArm {

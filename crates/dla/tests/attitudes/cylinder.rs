@@ -73,7 +73,7 @@ fn start(from: &Attitude<f64>) -> Place<6> {
 const RATE: f64 = 6.0;
 const SPIN: f64 = 10.0;
 
-/// The largest error of the height over so many steps, of the length of the quaternion, and of the contact.
+/// The largest error of the height over `steps` steps, of the length of the quaternion, and of the contact.
 fn errors<Method: OneStep<6, 3>>(mut method: Method, from: &Attitude<f64>, (a_round, steps): (u64, u64)) -> [f64; 3] {
     let step = std::f64::consts::TAU / RATE / a_round as f64;
     let frequency = RATE * (RATIO / (1.0 + RATIO)).sqrt();

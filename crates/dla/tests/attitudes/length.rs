@@ -11,7 +11,7 @@ fn ball() -> ChaplyginBall {
     ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1])
 }
 
-/// The largest `||e|^2 - 1|/2` over so many steps of 0.05 s.
+/// The largest `||e|^2 - 1|/2` over `steps` steps of 0.05 s.
 fn off<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     (system, start): &(Sys, Place<N>),
     mut method: Method,

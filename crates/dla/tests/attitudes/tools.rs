@@ -29,7 +29,7 @@ where
     }
 }
 
-/// The largest values of some quantities over a run of so many steps of that length, and how it ends.
+/// The largest values of some quantities over a run of `steps` steps of length `step` (s), and how it ends.
 pub fn largest<Sys, F, const N: usize, const M: usize, const K: usize>(
     system: &Sys,
     method: &mut dyn OneStep<N, M>,

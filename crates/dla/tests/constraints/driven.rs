@@ -25,7 +25,7 @@ impl System<2, 1> for Led {
     }
 }
 
-/// Where the coordinate vanishes, a place is known to the rounding of the increment that leads there, not to that of itself.
+/// Where the coordinate vanishes, the error of a place is the rounding of the increment that leads there, which is larger than the rounding of the place.
 fn passes_through_zero(nodes: &[u32], steps: u64) {
     let passes = |name: &str, method: &mut dyn OneStep<2, 1>| {
         for &nodes in nodes {

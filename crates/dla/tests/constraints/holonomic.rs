@@ -55,7 +55,7 @@ fn positions_hold_at_any_step() {
     }
 }
 
-/// Errors at the time 1 with so many steps, against the place that is known.
+/// Errors at the time 1 with `counts` steps, against the known place.
 fn errors<Method>(method: &Method, counts: [u64; 4], reference: &Place<3>) -> [f64; 4]
 where
     Method: OneStep<3, 2> + Clone,
@@ -71,7 +71,7 @@ where
     })
 }
 
-/// Against Lobatto's method of order 4, whose error with so many steps is little.
+/// Against Lobatto's method of order 4, whose error is far smaller with the same steps.
 fn orders(counts: [u64; 4], steps: u64) {
     let sleigh = sleigh();
     let reference = end(&ThreeTwo::from(sleigh), &mut Lobatto::<3>::new(), sleigh.start(), 1.0 / steps as f64, steps);

@@ -10,7 +10,7 @@ use sleigh::effects::Thrust;
 use sleigh::{ClosedMap, Flywheel, Sleigh};
 use std::ops::ControlFlow;
 
-/// The largest departure of the rotor's absolute rate `omega + psi'` from that of the start, relative.
+/// The largest departure of the rotor's absolute rate `omega + psi'` from its first value, relative.
 #[derive(Default)]
 struct Spin {
     start: f64,
@@ -84,7 +84,7 @@ fn a_free_rotor_keeps_its_momentum_at_length() {
 /// The frequency `w` of the drive over `c = m a/J`.
 const DELAY: f64 = 0.5 / (0.5 / 1.25);
 
-/// The speed after so many steps from one, and `3 <K'^2> t/(m^2 a)`, where the rotor's momentum `K` is driven to and fro.
+/// The speed after `count` steps from 1 m/s, and `3 <K'^2> t/(m^2 a)`, where the rotor's momentum `K` is driven to and fro.
 fn driven(count: u64) -> [f64; 2] {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let (amplitude, frequency) = (1.0, 0.5);

@@ -206,7 +206,7 @@ fn rates(scene: &Scene, t: f64, middle: f64, place: &Place) -> Place {
     [u * cos - s * sin, u * sin + s * cos, omega, du, domega, place[6] - omega, all.rotor]
 }
 
-/// The velocities after a jump of what is imposed: the momenta of what is not stay.
+/// The velocities after a jump of the imposed rates. The momenta of the other coordinates stay.
 fn after_jump(scene: &Scene, t: f64, before: f64, middle: f64, place: &mut Place) {
     let (old, new) = (terms(scene, t, before, place), terms(scene, t, middle, place));
     let [uu, uw, ww] = old.mass;
@@ -216,7 +216,7 @@ fn after_jump(scene: &Scene, t: f64, before: f64, middle: f64, place: &mut Place
     (place[3], place[4]) = (u, omega);
 }
 
-/// The start, with what is imposed.
+/// The start, with the imposed rates.
 fn start(scene: &Scene, middle: f64) -> Place {
     let at = scene.start;
     let rotor = scene.effects.iter().find_map(|effect| match effect {

@@ -27,7 +27,7 @@ fn pushes() -> [AnyEffect; 2] {
     [AnyEffect::Thrust(Thrust::new(swing(0.3)).unwrap()), AnyEffect::Torque(Torque::new(swing(1.1)).unwrap())]
 }
 
-/// Along a run of so many steps by the first method, the largest difference that one step of the second makes, in velocities and impulses.
+/// Along a run of `count` steps by the first method, the largest difference that one step of the second makes, in velocities and impulses.
 fn differences(effects: Vec<AnyEffect>, form: Form, count: u32) -> [f64; 2] {
     let system = laden(sleigh(), effects);
     let (q, v) = moving().to_coordinates();

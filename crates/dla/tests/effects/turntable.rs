@@ -10,7 +10,7 @@ fn table(rate: f64) -> Laden<Guided<0>> {
     laden(Guided::turntable(sleigh(), rate).unwrap(), vec![])
 }
 
-/// Where so many steps end, and how well the constraint held.
+/// The place after `count` steps, and the largest residual of the constraint.
 fn on_the_constraint(count: u64) -> (State<3>, Balance) {
     let mut seen = Balance::default();
     let end = run(&table(0.35), &mut Dla::midpoint(), &steps(0.02, count), moving().to_coordinates(), &mut seen);

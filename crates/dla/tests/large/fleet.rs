@@ -88,7 +88,7 @@ macro_rules! systems {
 }
 systems!(18 6, 30 10, 39 13, 60 20);
 
-/// What is known of a motion: where it begins and where it is.
+/// A known motion: its start, and its place at a time.
 pub trait Known<const N: usize, const M: usize>: System<N, M> + Copy + Send + 'static {
     fn new() -> Self;
     fn mirror(&self) -> &Mirror<N>;
@@ -153,7 +153,7 @@ where
 /// What a run ended with.
 #[derive(Debug, Clone, Copy)]
 pub struct Ended {
-    /// How far the configuration is from where it should be.
+    /// The distance of the configuration from the known one.
     pub error: f64,
     /// The largest constraint residual.
     pub slip: f64,
@@ -164,14 +164,14 @@ pub struct Ended {
 pub const STEPS: u64 = 20;
 pub const STEP: f64 = 0.01;
 
-/// Runs something on a thread with a stack of so many bytes.
+/// Calls a function on a thread with a stack of `bytes` bytes.
 pub fn with_stack<T: Send + 'static>(bytes: usize, run: impl FnOnce() -> T + Send + 'static) -> T {
     // Without optimisation nothing shares its place in a frame, and a step in vector registers has one of megabytes.
     let bytes = if cfg!(debug_assertions) { 32 * bytes } else { bytes };
     std::thread::Builder::new().stack_size(bytes).spawn(run).unwrap().join().unwrap()
 }
 
-/// Runs a system on a thread with a stack of so many bytes: a step that needs more would end the program.
+/// Runs a system on a thread with a stack of `bytes` bytes: a step that needs more would end the program.
 pub fn on_stack<Sys, Method, const N: usize, const M: usize>(
     bytes: usize,
     method: impl FnOnce() -> Method + Send + 'static,
@@ -183,7 +183,7 @@ where
     for_steps::<Sys, Method, N, M>(STEPS, bytes, method)
 }
 
-/// The same for so many steps.
+/// The same for `steps` steps.
 pub fn for_steps<Sys, Method, const N: usize, const M: usize>(
     steps: u64,
     bytes: usize,

@@ -4,7 +4,7 @@ use crate::support::{ByHand, Three};
 use dla::Lobatto;
 use lagrangian::{System, With};
 
-/// A start and where it leads.
+/// A start, and the place where its motion ends.
 struct Case<'a, Sys> {
     name: &'a str,
     system: Sys,

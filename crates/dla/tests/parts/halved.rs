@@ -30,7 +30,7 @@ fn halves_that_lead_elsewhere_do_not_resolve() {
     assert!(Halved { v: [1.0, 1.5, 2.0, 2.000_001], moved: [1.5, 1.500_001] }.is_resolved(1.0, 1.0, 0.0));
 }
 
-/// What a midpoint rule makes of a turn of a million radians: it stays where it is, and turns as before. All halves agree.
+/// What a midpoint rule makes of a turn of a million radians: the body keeps its place, and turns as before. All halves agree.
 #[test]
 fn a_way_that_the_velocities_do_not_account_for_is_no_motion() {
     let stays = Halved { v: [0.3; 4], moved: [0.0; 2] };

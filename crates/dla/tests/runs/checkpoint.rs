@@ -64,7 +64,7 @@ fn resumed_runs(stops: &[u64], steps: u64) {
     }
 }
 
-/// The control: what is not saved is missed.
+/// The control: a run goes another way if a saved part is left out.
 #[test]
 fn every_part_of_a_state_counts() {
     let sleigh = system();

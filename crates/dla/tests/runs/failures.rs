@@ -161,7 +161,7 @@ fn a_failure_tells_what_to_do() {
     }
 }
 
-/// The history is that of the corrections: quadratic convergence cut off, a limit of rounding, and divergence.
+/// The history holds the corrections: quadratic convergence cut off, a limit of rounding, and divergence.
 #[test]
 fn the_history_tells_how_a_search_went() {
     let sleigh = system();

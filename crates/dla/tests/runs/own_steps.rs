@@ -178,7 +178,7 @@ proptest! {
     }
 }
 
-/// A method whose steps are those of the run shows none, and remembers nothing.
+/// A method that takes the steps of the run shows none of its own, and remembers nothing.
 #[test]
 fn steps_of_the_run_have_none_within() {
     let start = State::new([0.0; 3], [1.0, 0.0, 0.0], [false, false, true]);

@@ -25,7 +25,7 @@ use test_systems::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOn
 /// A method as what a system brings of its own: observers and runs that ask for one by its name make it.
 pub(crate) struct Own<Step>(pub(crate) Step);
 
-/// The name of a method whose steps are those of the run.
+/// The name of a method that takes the steps of the run.
 pub(crate) static OWN: LazyLock<Method> = LazyLock::new(|| Method::named("dla", None).unwrap());
 
 /// The name of a method that makes steps of its own within a step.
@@ -190,7 +190,7 @@ impl Piecewise for Two {
     }
 }
 
-/// The same with what is known of a motion by hand: a type of its own, since methods go another way where nothing is.
+/// The same with equations by hand. It is a type of its own, since methods take another way for a system without them.
 macro_rules! by_hand {
     ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* }) => {
         shape! {

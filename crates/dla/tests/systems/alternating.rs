@@ -72,7 +72,7 @@ impl Effect<CentreOfMass, 3> for Bowl {
     }
 }
 
-/// A run, and where it ends.
+/// A run, and its last state.
 struct Case<'a, Sys> {
     name: &'static str,
     system: &'a Sys,
@@ -90,7 +90,7 @@ impl<'a, Sys: System<3, 1>> Case<'a, Sys> {
         Self { name, system, start, duration, end }
     }
 
-    /// The largest error of a coordinate or velocity at the end, after so many solves in all.
+    /// The largest error of a coordinate or velocity at the end, if the run may solve `solves` times.
     fn error(&self, mut method: impl OneStep<3, 1>, stages: u64, solves: u64) -> f64 {
         let steps = solves / stages;
         let mut state = self.start;

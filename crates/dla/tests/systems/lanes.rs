@@ -132,7 +132,7 @@ fn the_last_step_helps_the_next() {
     assert!(next(recalled) < next(Gauss::new::<8>()));
 }
 
-/// A turned velocity is another motion: what is remembered of the old one must not be taken for it.
+/// A turned velocity is another motion: the memory of the old one must not serve it.
 #[test]
 fn the_way_back_ends_at_the_start() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();

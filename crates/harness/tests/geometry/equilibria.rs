@@ -69,7 +69,7 @@ fn straight_motion_has_the_eigenvalues_of_the_book() {
     assert!(found.iter().any(|e| e.xi[0].abs() < 1e-8));
 }
 
-/// No step is too long for `dla`; for `rk4` the limit is that of its polynomial, 2.7853 over the rate.
+/// No step is too long for `dla`; the polynomial of `rk4` limits its step to 2.7853 over the rate.
 #[test]
 fn the_step_has_the_limit_of_its_method() {
     let sleigh = sleigh();

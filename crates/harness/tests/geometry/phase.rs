@@ -134,7 +134,7 @@ fn within_a_the_blade_turns_for_ever_in_full() {
     check_mean_turn((1000, 40), 1e-6);
 }
 
-/// `2 pi (1 - sqrt(1 - R^2/a^2))` a round, measured over many rounds of so many steps.
+/// `2 pi (1 - sqrt(1 - R^2/a^2))` a round, measured over many rounds of `steps` steps each.
 fn check_mean_turn((rounds, steps): (u64, u64), most: f64) {
     for r in [0.5_f64, 0.9] {
         let path = circle(r);

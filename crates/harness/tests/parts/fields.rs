@@ -10,7 +10,7 @@ test_systems::short_and_full! {
     heavy_drag_at_length => dragged(&[(0.1, 20), (1.0, 20), (3.0, 20), (1e3, 4)], 20);
 }
 
-/// Straight ahead under drag: `u = e^(-c t/m)`, and the way is what of it is gone, times `m/c`. Nothing turns it round. Steps of so many
+/// Straight ahead under drag: `u = e^(-c t/m)`, and the way is the lost speed times `m/c`. Nothing turns the sleigh round. Steps of so many
 /// time constants, and some of a million.
 fn dragged(cases: &[(f64, u64)], of_a_million: u64) {
     let start = SleighState { speed: 1.0, ..SleighState::default() };

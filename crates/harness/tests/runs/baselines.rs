@@ -169,7 +169,7 @@ impl System<2, 1> for Slowed {
     }
 }
 
-/// These methods need no derivative of a force; what is not a number they name like all others.
+/// These methods need no derivative of a force; a value that is not a number they name like all others.
 #[test]
 fn what_is_not_a_number_is_named() {
     fn outcome(system: Slowed, mut method: impl OneStep<2, 1>) -> Result<u64, StepError> {

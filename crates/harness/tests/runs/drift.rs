@@ -174,7 +174,7 @@ fn the_smaller_slope_wins_from_where_the_lines_meet() {
     assert_eq!(of(2.0, 0.0).better_from(&of(0.1, 0.0)), None);
 }
 
-/// A run from checkpoint to checkpoint that ends where it is told to; its record and its last checkpoint.
+/// A run from checkpoint to checkpoint that ends at a given step; its record and its last checkpoint.
 fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) -> (Record, Checkpoint) {
     struct Until(u64, Option<u64>);
     impl harness::Progress for Until {

@@ -40,7 +40,7 @@ proptest! {
         prop_assert!((enclosed_area(&backward) + PI * a * b).abs() <= rounding);
     }
 
-    /// The flow shrinks the plain area where it runs forward, and keeps the weighted one.
+    /// The flow shrinks the plain area while the sleigh runs forward, and keeps the weighted one.
     #[test]
     fn the_flow_keeps_the_weighted_area(u in 0.3..1.0f64, omega in 0.1..0.8f64, t in 1.0..4.0f64, left in any::<bool>()) {
         let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();

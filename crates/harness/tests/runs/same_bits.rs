@@ -69,7 +69,7 @@ test_systems::short_and_full! {
     a_bit_of_the_start_shows_at_length => check_bit(general(), LONG);
 }
 
-/// The control: what is compared tells the smallest change of a start.
+/// The control: the comparison tells the smallest change of a start.
 fn check_bit(methods: impl Iterator<Item = &'static MethodInfo>, length: Length) {
     for info in methods {
         let method = Method::named(info.name, Some(0.3)).unwrap();

@@ -43,7 +43,7 @@ test_systems::short_and_full! {
     where_nothing_is_divided_no_bit_is_changed_at_length => check_undivided(general(), 200);
 }
 
-/// Steps that resolve the motion are those of a run that may divide none, to the last bit.
+/// Steps that resolve the motion are never divided: the run is the same to the last bit if it may divide none.
 fn check_undivided(methods: impl Iterator<Item = &'static MethodInfo>, steps: u64) {
     let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(steps, 0.01));
     let system = Subject::from(&system);

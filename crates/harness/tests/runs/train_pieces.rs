@@ -135,7 +135,7 @@ fn jerked() -> (Train, AssemblyState) {
     (train, start)
 }
 
-/// The end of the bent train after so many steps of a method.
+/// The end of the bent train after `steps` steps of a method.
 fn jerked_end(name: &str, steps: u64) -> Vec<f64> {
     let (train, start) = jerked();
     let method = Method::named(name, None).unwrap();
@@ -147,7 +147,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |most, (a, b)| larger(most, a - b))
 }
 
-/// The error of so many steps and of twice as many.
+/// The error of `steps` steps and of twice as many.
 fn check_order(name: &str, order: f64, steps: u64, right: &[f64]) {
     let [coarse, fine] = [steps, 2 * steps].map(|steps| distance(&jerked_end(name, steps), right));
     println!("{name}: {coarse:e} {fine:e}");

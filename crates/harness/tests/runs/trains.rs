@@ -58,7 +58,7 @@ test_systems::short_and_full! {
     a_run_of_a_train_is_measured_in_full => check_measured(200);
 }
 
-/// The work of drag and thrust is taken off the energy; what is left is of the order of the method.
+/// The work of drag and thrust is taken off the energy; the rest is of the order of the method.
 fn check_measured(count: u64) {
     let (train, schedule) = (train(), steps(count));
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
@@ -140,7 +140,7 @@ test_systems::short_and_full! {
     events_along_a_train_in_full => check_events([0.513, 0.911]);
 }
 
-/// The state at a crossing is that of a shorter step of the method, and a terminal event ends the run there.
+/// The state at a crossing is the end of a shorter step of the method, and a terminal event ends the run there.
 fn check_events(places: [f64; 2]) {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
@@ -220,7 +220,7 @@ fn seconds(steps: u64) -> Schedule {
     Schedule { t0: 0.0, step: 1.0, steps }
 }
 
-/// Driven in parts; on a way of some metres its end is that of short steps.
+/// Driven in parts; on a way of some metres short steps end at the same place.
 fn in_parts(name: &str, long: &Schedule, right: &[f64]) -> (Method, Record) {
     let (train, start) = turning();
     let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());

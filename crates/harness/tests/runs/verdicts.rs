@@ -21,7 +21,7 @@ fn straight(speed: f64) -> ([f64; 3], [f64; 3]) {
     ([0.0; 3], [speed, 0.0, 0.0])
 }
 
-/// The intervals hold what is known; those of exponents that are not zero do not hold zero.
+/// The intervals hold the known exponents; the interval of an exponent that is not zero does not hold zero.
 fn check_intervals(found: &Lyapunov, known: [f64; 5]) {
     for ((exponent, ci), known) in found.exponents.iter().zip(&found.ci).zip(known) {
         let ci = ci.unwrap();

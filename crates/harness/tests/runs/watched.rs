@@ -76,7 +76,7 @@ fn long_steps_hide_no_event() {
     assert_times(&run(FREE, (-20.0, 3), &[half()]), &backward);
 }
 
-/// The run ends at the event, in the middle of a long step, and the nodes before it are those of the run without events.
+/// The run ends at the event, in the middle of a long step, and the nodes before are the same as without events.
 #[test]
 fn a_long_step_ends_at_an_event() {
     let third = Event::new("x = -1/2", |_, q, _| q[0] + 0.5).terminal();

@@ -112,7 +112,7 @@ struct Count {
     wrong: u32,
 }
 
-/// Steps of every length from every so many starts against what `expected` follows: what `seen` sees of the state after the step.
+/// Steps of every length from every `every`-th start. After each step `seen` of the state is compared with `expected`.
 fn count<M: OneStep<3, 1>>(
     every: usize,
     method: impl Fn() -> M,
@@ -172,14 +172,14 @@ fn gni(every: usize) -> Count {
     count(every, Gni::<3>::default, by_reflection, |state, h| state.unwrapped()[2] / h)
 }
 
-/// No step is wrong; more than so many are right, and more than so many have no solution or are refused.
+/// No step is wrong; more than `right` are right, and more than `refused` have no solution or are refused.
 fn on_the_branch(name: &str, count: &Count, [right, refused]: [u32; 2]) {
     println!("{name:<18} {count:?}");
     assert_eq!(count.wrong, 0, "{name} accepts solutions of another motion: {count:?}");
     assert!(count.right > right && count.none + count.refused > refused, "{name}: {count:?}");
 }
 
-/// More than so many steps are wrong, and more than so many are right.
+/// More than `wrong` steps are wrong, and more than `right` are right.
 fn off_the_branch(count: &Count, [wrong, right]: [u32; 2]) {
     println!("{:<18} {count:?}", "gni");
     assert!(count.wrong > wrong && count.right > right, "the same measure sees other solutions with gni: {count:?}");

@@ -16,7 +16,7 @@ pub struct Facts {
     pub affine: bool,
     /// A constraint on positions.
     pub positions: bool,
-    /// Discrete Lagrangians and constraints with one node do not depend on where it is. Angular velocities are `e0` times the
+    /// Discrete Lagrangians and constraints with one node do not depend on the place of the node. Angular velocities are `e0` times the
     /// increment of a quaternion, and the increment times itself adds none; so one rule is all, if the length is held on positions.
     pub one_rule: bool,
     /// No basis of the admissible velocities.
@@ -68,7 +68,7 @@ impl Point {
         self.q.iter().chain(&self.v).copied()
     }
 
-    /// The largest difference in place and velocity; what is not a number is infinitely far.
+    /// The largest difference in place and velocity; not-a-number is infinitely far.
     pub fn distance(&self, other: &Self) -> f64 {
         let differences = self.components().zip(other.components()).map(|(a, b)| (a - b).abs());
         differences.fold(0.0, |m, d| if d.is_nan() { f64::INFINITY } else { f64::max(m, d) })
@@ -148,7 +148,7 @@ pub trait Case {
     fn start(&self) -> Point;
     fn duration(&self) -> f64;
 
-    /// Runs from a point, shows every node, returns where it ends.
+    /// Runs from a point, shows every node, returns the last one.
     fn run(&self, method: &Method, from: &Point, schedule: &Schedule, watch: Watch<'_>) -> Result<Point, RunError>;
 
     /// The state a time `t` (s) after the given one, in closed form.

@@ -127,7 +127,7 @@ fn plain_symmetric_scheme(z0: f64, periods: u64) -> Vec<f64> {
     energies
 }
 
-/// From 1.5 to `end` in so many periods, with this slope, from whatever start.
+/// From 1.5 to `end` in `periods` periods, with this slope, from whatever start.
 fn loses(periods: usize, end: f64, rate: f64) {
     for z0 in [-0.9, -0.1, 0.7].map(|z| z * 2f64.sqrt()) {
         let energies = plain_symmetric_scheme(z0, periods as u64);

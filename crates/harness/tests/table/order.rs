@@ -11,7 +11,7 @@ struct Look {
     duration: Option<f64>,
     /// By how many steps.
     steps: fn(f64, &MethodInfo) -> Vec<u64>,
-    /// Of which so many last ones count.
+    /// The number of last errors that count.
     last: usize,
     /// Steps a second of two references.
     fine: [f64; 2],
@@ -154,7 +154,7 @@ fn every_method_has_its_order_at_length() {
     }
 }
 
-/// With one node away from the middle the rule loses an order, unless the row does not tell where it is.
+/// With one node away from the middle the rule loses an order, unless the row does not depend on the place of the node.
 fn one_sided(rows: &Rows, duration: Option<f64>, fine: f64, steps: u64) {
     let rule = Method::named("dla-alpha", Some(0.25)).unwrap();
     for case in rows.iter().filter(|case| !case.facts().without_basis) {

@@ -11,7 +11,7 @@ use sleigh::{Sleigh, SleighState};
 
 const FORCE: f64 = -0.5;
 
-/// The largest change of `K`, and its slope (J/s), in so many steps.
+/// The largest change of `K`, and its slope (J/s), in `steps` steps.
 fn change(name: &str, steps: u64) -> (f64, f64) {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let start = SleighState { turn_rate: 0.1, ..SleighState::default() };

@@ -135,7 +135,7 @@ pub fn reduced_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
 /// The accelerations `xi'` if `v` is the velocity of the quasi-velocities and `acceleration` its rate.
 ///
 /// # Errors
-/// [`ReducedError`] where there is no basis, or where it is degenerate.
+/// [`ReducedError`] if there is no basis, or if the basis is degenerate.
 pub fn reduced_from_motion<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     t: f64,

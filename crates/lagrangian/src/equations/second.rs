@@ -157,7 +157,7 @@ pub fn add_position_curvature<Sys: System<N, M>, const N: usize, const M: usize>
     add_curvature(&Functions { system, t, q, v: None }, factors, matrix);
 }
 
-/// The functions of the constraints that are not affine, of the velocities `v`; without `v` those of the constraints on positions.
+/// The functions of the constraints that are not affine, of the velocities `v`; without `v` the constraints on positions.
 struct Functions<'a, Sys, const N: usize> {
     system: &'a Sys,
     t: f64,

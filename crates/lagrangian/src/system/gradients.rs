@@ -152,7 +152,7 @@ pub struct SeededMember<F, const P: usize> {
     pub parameters: [Seeded; P],
 }
 
-/// All numbers are [`Called`]: of numbers with so many parts a call costs little, and a system is compiled small.
+/// All numbers are [`Called`]: a call costs little beside such large numbers, and a system is compiled small.
 impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> Gradients<N, M> for SeededMember<F, P> {
     fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded {
         self.lagrangian_along(fixed(t), &mapped(q, fixed), &mapped(v, fixed)).re

@@ -50,7 +50,7 @@ const MUTANTS: &[(&str, &str)] = &[
     ("duration = 2.0", ""),
 ];
 
-/// Every kind of effect, in all of its forms, and what is wrong with each.
+/// Every kind of effect, in all of its forms, and the errors of each.
 const ENTRIES: &[(&str, &[(&str, &str)])] = &[
     ("kind = \"slope\"\ngravity = [1.0, 0]", &[("[1.0, 0]", "1.0"), ("[1.0, 0]", "[1.0]"), ("slope", "slopes")]),
     ("kind = \"bowl\"\nstiffness = [1.0, 0.0]", &[("[1.0, 0.0]", "[1.0, 0.0, 0.0]"), ("kind = \"bowl\"\n", "")]),

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// Whether the value is valid, or else what is wrong with it.
+/// Whether the value is valid, or else the error.
 pub(super) fn validate(root: &Value, schema: &Value, value: &Value) -> Result<(), String> {
     let fail = |what: &str| Err(format!("{value}: {what} {schema}"));
     let number = |bound: &Value| value.as_f64().zip(bound.as_f64());

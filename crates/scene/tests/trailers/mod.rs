@@ -38,7 +38,7 @@ fn a_scene_with_trailers_is_a_train() {
     assert!(Scene::load("turnaround", METHODS).unwrap().built().unwrap().system().train().is_none());
 }
 
-/// Whatever acts on a sleigh acts on the first blade of a train; a velocity that is imposed is that of the start.
+/// Whatever acts on a sleigh acts on the first blade of a train; an imposed velocity sets the start.
 #[test]
 fn every_effect_goes_with_trailers() {
     for (entry, coordinates, speed) in [

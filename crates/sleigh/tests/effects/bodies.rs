@@ -79,7 +79,7 @@ fn responses_to_forces() {
     }
 }
 
-/// The centre of mass is `a` ahead along the heading, and its velocity that of the blade and `a omega` across.
+/// The centre of mass is `a` ahead along the heading, and its velocity is the velocity of the blade plus `a omega` across.
 #[test]
 fn the_centre_of_mass_is_ahead() {
     let (a, heading) = (0.4, 0.7_f64);

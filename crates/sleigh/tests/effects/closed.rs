@@ -60,7 +60,7 @@ proptest! {
         assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
     }
 
-    /// What steps before have left changes where the search begins, not where it ends: also of another sleigh, after a jump of
+    /// The memory of earlier steps changes the first guess of the search, not its result: also of another sleigh, after a jump of
     /// the velocity, or of the place.
     #[test]
     fn the_step_is_the_same_whatever_is_remembered(
@@ -157,7 +157,7 @@ proptest! {
         assert_relative_eq!(whole, h * lambda * mean_u * mean_omega / (u * omega), max_relative = 4.0 * h * h + 1e-10);
     }
 
-    /// The change of the momentum in the plane, `m (P' + a omega n)`, is that of the impulses across the blade at both ends.
+    /// The change of the momentum in the plane, `m (P' + a omega n)`, equals the impulses across the blade at both ends.
     #[test]
     fn impulses_change_the_momentum(
         (m, i, a) in (0.1..3.0, 0.5..3.0, -0.8..0.8), heading in -3.0..3.0, u in -1.0..1.0, omega in -2.0..2.0, h in 0.1..0.5,
@@ -253,7 +253,7 @@ fn a_small_turn_is_one_correction() {
     }
 }
 
-/// With the mass at the blade the step is a turn, by the series of sine and cosine or by those of the platform.
+/// With the mass at the blade the step is a turn, by the series of sine and cosine or by the functions of the platform.
 #[test]
 fn sines_have_all_their_digits() {
     let wheel = Sleigh::new(1.0, 1.0, 0.0).unwrap();

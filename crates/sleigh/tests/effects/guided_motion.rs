@@ -23,7 +23,7 @@ fn masses() -> [MovingMass; 3] {
     ]
 }
 
-/// The equations by hand are those of the Lagrangian, alone and under a thrust and a slope; on numbers that carry derivatives too.
+/// The equations by hand agree with the Lagrangian, alone and under a thrust and a slope; on numbers that carry derivatives too.
 fn check<const K: usize, const M: usize>(body: Guided<K>, t: f64, q: &[f64; 3], z: &[f64; 3])
 where
     Guided<K>: System<3, M> + Reduced<3, M>,

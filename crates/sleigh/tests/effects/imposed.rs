@@ -15,7 +15,7 @@ fn moving(q: &[f64; 3], speed: f64, slip: f64, turn_rate: f64) -> [f64; 3] {
     [speed * cos - slip * sin, speed * sin + slip * cos, turn_rate]
 }
 
-/// How far a velocity is from all rows, where it meets them but for rounding; and that each row sees it change.
+/// The largest residual of a velocity that meets all rows but for rounding; each row must see the velocity change.
 fn check<Sys: System<3, M>, const M: usize>(system: &Sys, t: f64, q: &[f64; 3], v: [f64; 3]) {
     for residual in constraint_residual(system, t, q, &v) {
         // Numbers below ten, a dozen operations.
@@ -60,7 +60,7 @@ proptest! {
         check(&turning.on_turntable(rate).unwrap(), 0.0, &q, carried(u));
     }
 
-    /// `C' = P' + a omega n` is that of the path, with `theta' = (n . C')/a`.
+    /// `C' = P' + a omega n` is the velocity of the path, with `theta' = (n . C')/a`.
     #[test]
     fn a_tracer_leads_the_centre(q in proptest::array::uniform3(-3.0..3.0f64), t in 0.0..5.0) {
         let path = ClosedPath::circle(0.7, [0.1, 0.2], 5.0).unwrap();

@@ -97,7 +97,7 @@ proptest! {
         assert_abs_diff_eq!(w * (1.0 - k * chord), omega1 - of_inertia * torque, epsilon = bound);
     }
 
-    /// What steps before have left changes where the search begins, not where it ends: also of another sleigh, after a jump of the
+    /// The memory of earlier steps changes the first guess of the search, not its result: also of another sleigh, after a jump of the
     /// velocity, or at another heading.
     #[test]
     fn the_step_is_the_same_whatever_is_remembered(

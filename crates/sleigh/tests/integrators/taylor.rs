@@ -76,7 +76,7 @@ fn sleighs() -> impl Strategy<Value = Sleigh> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever pushes the sleigh in its own axes, and wherever they are counted from, the motion is that of collocation.
+    /// Whatever pushes the sleigh in its own axes, and wherever they are counted from, the motion agrees with collocation.
     #[test]
     fn series_and_collocation_are_one_motion(
         sleigh in sleighs(), k in -0.3..0.3f64, push in proptest::array::uniform2(-0.5..0.5f64),

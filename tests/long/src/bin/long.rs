@@ -8,9 +8,9 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// A value of the energy error is kept of so many steps.
+/// Of every `EVERY` steps one value of the energy error is kept.
 const EVERY: u64 = 1000;
-/// An estimate needs so many increments.
+/// The least number of increments for an estimate.
 const FEWEST: usize = 16;
 
 #[derive(Default)]
