@@ -3,6 +3,7 @@
 use crate::sensitivity::systems::Controlled;
 use crate::support::ByHand;
 use dla::{Dla, Form, Sensitivity, State};
+use lagrangian::{Constraint, Scalar, System};
 use sleigh::{Sleigh, SleighState};
 
 /// About straight motion at the speed `U` a spin is multiplied by `(1 - h c U/2)/(1 + h c U/2)`, `c = m a/J`, a speed by 1.
@@ -53,4 +54,42 @@ fn what_vanishes_and_what_does_not() {
     // A thrust for the time h gives the speed h/m, times its swing in the middle of the step, but for the turning of the blade.
     let swing = 1.0 + 0.5 * (2.0 * 0.05f64).sin();
     approx::assert_relative_eq!(thrust[0], swing * 0.1 / 1.3, max_relative = 0.1f64.powi(2));
+}
+
+/// A unit mass on a stiff spring about a place far away. Places there are rounded to 1e-4 m, and the force of the spring to 1 N.
+struct FarSpring;
+
+impl FarSpring {
+    const PLACE: f64 = 1e12;
+    /// (N/m)
+    const STIFFNESS: f64 = 1e4;
+}
+
+impl System<1, 0> for FarSpring {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 1], v: &[S; 1]) -> S {
+        let stretch = q[0] - Self::PLACE;
+        (v[0] * v[0] - stretch * stretch * Self::STIFFNESS) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 1]) -> Constraint<S, 1, 0> {
+        ([], [])
+    }
+}
+
+/// Corrections of Newton's method that go to and fro by the rounding of a large force end the search: the step has its derivative.
+#[test]
+fn corrections_that_are_rounding_end_the_search() {
+    let h = 0.1;
+    // The midpoint rule is a linear map: with `c = k h^2/4` it takes `(x, v)` to `((1 - c) x + h v, (1 - c) v - k h x)/(1 + c)`.
+    let c = 0.25 * h * h * FarSpring::STIFFNESS;
+    let [stays, moves] = [(1.0 - c) / (1.0 + c), h / (1.0 + c)];
+    for i in 0..20 {
+        let (x, v) = (0.3 + 0.071 * f64::from(i), 1.0 - 0.13 * f64::from(i));
+        let mut state = State::new([FarSpring::PLACE + x], [v], [false]);
+        let derivative = Sensitivity::of(&FarSpring).step(&mut Dla::midpoint(), 0.0, h, &mut state).unwrap();
+        let [from_q, from_v] = [derivative.from_q[0], derivative.from_v[0]];
+        let exact = [stays, -FarSpring::STIFFNESS * moves, moves, stays];
+        for (found, exact) in [from_q.q, from_q.v, from_v.q, from_v.v].into_iter().zip(exact) {
+            approx::assert_relative_eq!(found[0], exact, max_relative = 1e-12);
+        }
+    }
 }
