@@ -410,7 +410,7 @@ fn a_comparison_from_its_checkpoints_is_the_same() {
     let train = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/train.toml");
     for (scene, methods) in [("turnaround --duration 20", ["dla", "rk4"]), (train, ["dla", "dla4"])] {
         let folder = Folder::new();
-        let short = if scene == train { " --duration 0.2" } else { "" };
+        let short = if scene == train { " --set effects.0.count=3 --duration 0.06" } else { "" };
         let line = format!("compare {scene}{short} --methods {} --json", methods.join(","));
         let whole = folder.json(&line);
         let saved = folder.json(&format!("{line} --checkpoint saves --checkpoint-every 100"));

@@ -84,7 +84,7 @@ fn rests(lines: &[&str]) {
 
 #[test]
 fn trains_at_rest_stay() {
-    rests(&["dla8 --duration 6.5"]);
+    rests(&["dla --duration 6.5"]);
 }
 
 #[test]

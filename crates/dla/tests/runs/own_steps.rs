@@ -160,7 +160,7 @@ fn by_both((start, h): (State<3>, f64)) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2))]
+    #![proptest_config(ProptestConfig::with_cases(1))]
 
     #[test]
     fn own_steps_are_those_of_the_run(step in steps()) {

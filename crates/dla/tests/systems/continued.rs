@@ -80,7 +80,7 @@ fn all_go_on((q, v, at, damping): Numbers) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 3, ..ProptestConfig::default() })]
     #[test]
     fn steps_that_go_on_are_those_without_memory(numbers in numbers()) {
         all_go_on(numbers)?;

@@ -76,7 +76,7 @@ fn at_once_as_in_turn((body, begin, stiffness, h): (Sleigh, SleighState, f64, f6
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(6))]
+    #![proptest_config(ProptestConfig::with_cases(2))]
 
     #[test]
     fn eight_stages_at_once_are_the_stages_in_turn(sleigh in sleighs()) {

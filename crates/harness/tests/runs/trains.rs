@@ -123,6 +123,7 @@ impl Progress for Impatient {
 }
 
 #[test]
+#[ignore = "slow"]
 fn an_interrupted_run_keeps_what_is_made() {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[]);
