@@ -1,4 +1,4 @@
-"""End states of random systems of text by several methods, at the order claimed, against DOP853 on equations derived by SymPy."""
+"""End states and works of random systems of text by several methods, at the order claimed, against DOP853 on equations derived by SymPy."""
 
 import sys
 
@@ -40,6 +40,7 @@ def main():
             findings.count("no truth")
             continue
         truth, path = truth.y[:, -1], rough
+        energies = [draw.numbers.energy(path.y[:, k], path.t[k]) for k in range(path.t.size)]
         findings.count("systems")
         for kind in ("rows", "positions", "forces"):
             findings.count(f"with {kind}", bool(getattr(draw.system, kind)))
@@ -51,11 +52,20 @@ def main():
         n = draw.system.size
         file = program.scene(f"ends-{seed}", draw.system.text(draw.start[:n], draw.start[n:], STEP, DURATION))
         for method in METHODS:
-            judge(program, findings, draw, file, method, truth, floor, (rate, size))
+            judge(program, findings, draw, file, method, truth, floor, (rate, size), energies)
     return findings.end()
 
 
-def judge(program, findings, draw, file, method, truth, floor, measure):
+def balanced(findings, where, shown, energies, error):
+    """The energy of the start, and the work: what the motion gains. A run whose end is wrong by `error` is wrong in its work by the energy."""
+    size = 1.0 + max(map(abs, energies))
+    if abs(shown["initial"] - energies[0]) > 1e-12 * size:
+        findings.fail("energy", **where, told=shown["initial"], right=energies[0])
+    if not abs(shown["work"] - (energies[-1] - energies[0])) <= (1e-9 + 1e3 * error) * size:
+        findings.fail("work", **where, told=shown["work"], right=energies[-1] - energies[0])
+
+
+def judge(program, findings, draw, file, method, truth, floor, measure, energies):
     errors = []
     for part in (1, 2, 4):
         step = STEP / part
@@ -72,6 +82,7 @@ def judge(program, findings, draw, file, method, truth, floor, measure):
             return findings.fail("not finite", **where)
         if answer.shown["constraint"]["max"] > 1e-12 * measure[1]:
             findings.fail("constraint", **where, residual=answer.shown["constraint"]["max"])
+        balanced(findings, where, answer.shown["energy"], energies, errors[-1])
         if method in OWN_STEPS:
             if errors[-1] > 10 * floor:
                 findings.fail("end", **where, error=errors[-1], bar=10 * floor)

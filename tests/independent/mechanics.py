@@ -78,6 +78,13 @@ class Numbers:
         self.formulas = [*mass, *f, *rows, *gamma, *g, *r]
         self.real = sp.lambdify(self.symbols, self.formulas, modules="math", cse=True)
         self.other = None
+        momenta = [sp.diff(system.lagrangian, rate) for rate in system.v]
+        energy = sum(p * rate for p, rate in zip(momenta, system.v)) - system.lagrangian
+        self.energy_at = sp.lambdify(self.symbols, energy, modules="math", cse=True)
+
+    def energy(self, z, t):
+        """`v . L_v - L` (J)."""
+        return self.energy_at(*z.tolist(), t, *self.numbers)
 
     def bound(self, numbers):
         """The same with these numbers of the parameters."""

@@ -158,14 +158,18 @@ impl SparseDla {
     fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), StepError> {
         /// If the change of the velocity is a smaller fraction of the velocity (squared), it is round-off.
         const ROUNDING: f64 = 1e-16;
-        let mut sums = [0.0; 3];
-        for placed in assembly.placed().iter().filter(|placed| placed.element.acts()) {
-            let own = at(placed, &self.q0, &self.v, |q0, v| {
-                gathered(placed, |i| self.v1[i], |v1| placed.element.braking(step, q0, [v, v1]))
-            });
-            sums = lagrangian::from_fn(|i| sums[i] + own[i]);
+        let of = |placed: &PlacedElement, ask: &dyn Fn(&[f64], [&[f64]; 2]) -> [f64; 2]| {
+            at(placed, &self.q0, &self.v, |q0, v| gathered(placed, |i| self.v1[i], |v1| ask(q0, [v, v1])))
+        };
+        let acting = || assembly.placed().iter().filter(|placed| placed.element.acts());
+        let damping: f64 =
+            acting().map(|placed| of(placed, &|q0, v| [placed.element.damping(step, q0, v), 0.0])[0]).sum();
+        if damping <= 0.0 {
+            return Ok(());
         }
-        let [damping, inertia, all] = sums;
+        let [inertia, all] = acting()
+            .map(|placed| of(placed, &|q0, v| placed.element.inertia(step, q0, v)))
+            .fold([0.0; 2], |[inertia, all], own| [inertia + own[0], all + own[1]]);
         if damping > inertia && inertia > ROUNDING * all {
             return Err(StepError::Overshoot { part: inertia / damping });
         }

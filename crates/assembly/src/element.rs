@@ -1,4 +1,5 @@
 use dla::NotANumber;
+use lagrangian::PowerSources;
 use std::fmt::Debug;
 
 /// Maximum number of coordinates of an element.
@@ -15,7 +16,7 @@ pub(crate) fn local<const N: usize>(x: &[f64]) -> [f64; N] {
 /// Matrices are given by rows.
 #[derive(Debug)]
 pub struct ElementBlocks<'a> {
-    /// Momenta or the residuals of the momentum equations, `N`.
+    /// Momenta or the residuals of the momentum equations, `N`; empty where they are not asked for.
     pub momentum: &'a mut [f64],
     /// What the constraints are to be met by, `M`.
     pub level: &'a mut [f64],
@@ -91,9 +92,15 @@ pub trait Element: Debug + Send + Sync {
     /// By how much a step turns the constraint that turns most (rad); zero where no angle turns far.
     fn turn(&self, step: (f64, f64), q0: &[f64], v: &[f64]) -> f64;
 
-    /// Damping and inertia of the change of velocity from the middle of a step to its end, and `|v . p|` (J): see
+    /// What may do work on it.
+    fn power_sources(&self) -> PowerSources;
+
+    /// The damping of the change of velocity from the middle of a step to its end (J): see
     /// [`StepError::Overshoot`](dla::StepError::Overshoot).
-    fn braking(&self, step: (f64, f64), q0: &[f64], v: [&[f64]; 2]) -> [f64; 3];
+    fn damping(&self, step: (f64, f64), q0: &[f64], v: [&[f64]; 2]) -> f64;
+
+    /// The inertia of that change, and `|v . p|` (J).
+    fn inertia(&self, step: (f64, f64), q0: &[f64], v: [&[f64]; 2]) -> [f64; 2];
 
     /// The first of its functions that is not finite, or has no finite derivative where a step needs one: see
     /// [`not_a_number`](dla::not_a_number). None by default.

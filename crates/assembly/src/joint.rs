@@ -1,7 +1,7 @@
 use crate::element::{Element, ElementBlocks, local};
 use dla::{Derivative, NotANumber, SystemFunction, Variable};
 use lagrangian::linear::larger;
-use lagrangian::{Dual, HyperDual, Scalar};
+use lagrangian::{Dual, HyperDual, PowerSources, Scalar, Traced};
 use std::fmt;
 
 /// What joins bodies: constraints on positions, and no inertia.
@@ -132,8 +132,18 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
         0.0
     }
 
-    fn braking(&self, _step: (f64, f64), _q0: &[f64], _v: [&[f64]; 2]) -> [f64; 3] {
-        [0.0; 3]
+    /// A joint does work if it moves with time.
+    fn power_sources(&self) -> PowerSources {
+        let position = self.joint.position(Traced::TIME, &[Traced::STATE; N]);
+        PowerSources { constraints: position.iter().any(|g| g.of_time), ..PowerSources::NONE }
+    }
+
+    fn damping(&self, _step: (f64, f64), _q0: &[f64], _v: [&[f64]; 2]) -> f64 {
+        0.0
+    }
+
+    fn inertia(&self, _step: (f64, f64), _q0: &[f64], _v: [&[f64]; 2]) -> [f64; 2] {
+        [0.0; 2]
     }
 
     /// A step needs its functions with their derivatives in the coordinates.

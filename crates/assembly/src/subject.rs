@@ -9,12 +9,14 @@ use lagrangian::linear::Singular;
 use lagrangian::{MotionError, PowerSources, ReducedError, Seeded};
 use nalgebra::DMatrix;
 use std::borrow::Cow;
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 
 /// An assembly as a [`Mechanism`], for runs. It has no quasi-velocities and no derivatives of steps.
 pub struct AssemblySubject<'a> {
     assembly: Cow<'a, Assembly>,
     work: RefCell<StepWork>,
+    /// The power sources of all elements, found when they are first asked for.
+    sources: OnceCell<PowerSources>,
     /// The method of the last integrator, with its memory: who looks inside steps makes one integrator after the other.
     spare: RefCell<Option<(MethodKind, Box<dyn AssemblyMethod>)>>,
 }
@@ -27,7 +29,7 @@ impl<'a> From<&'a Assembly> for AssemblySubject<'a> {
 
 impl<'a> AssemblySubject<'a> {
     fn of(assembly: Cow<'a, Assembly>) -> Self {
-        Self { assembly, work: RefCell::default(), spare: RefCell::default() }
+        Self { assembly, work: RefCell::default(), sources: OnceCell::new(), spare: RefCell::default() }
     }
 
     fn integrator_of(&self, kind: MethodKind) -> AssemblyIntegrator<'_> {
@@ -127,11 +129,14 @@ impl Mechanism for AssemblySubject<'_> {
     }
 
     fn power_sources(&self) -> PowerSources {
-        PowerSources::ALL
+        *self.sources.get_or_init(|| {
+            let each = self.assembly.placed().iter().map(|placed| placed.element.power_sources());
+            each.fold(PowerSources::NONE, PowerSources::and)
+        })
     }
 
-    fn work_between(&self, _sources: PowerSources, from: Place<'_>, to: Place<'_>) -> f64 {
-        self.work.borrow_mut().between(&self.assembly, from, to)
+    fn work_between(&self, sources: PowerSources, from: Place<'_>, to: Place<'_>) -> f64 {
+        self.work.borrow_mut().between((&self.assembly, sources), from, to)
     }
 
     fn motion(&self, t: f64, q: &[f64], v: &[f64]) -> Result<[Vec<f64>; 2], MotionError> {

@@ -1,7 +1,7 @@
 use crate::element::{Element, ElementBlocks, local};
 use dla::{Discretisation, EndMomenta, Mechanics, NotANumber, Rules};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{Dual, Midpoint, Motion, Piecewise, Rounded, Saddle, System, from_fn};
+use lagrangian::{Dual, Midpoint, Motion, Piecewise, PowerSources, Rounded, Saddle, System, from_fn};
 use std::fmt;
 
 /// What an assembly asks of a system: what methods ask, and what only an assembly does.
@@ -123,7 +123,7 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
             out.momentum.copy_from_slice(&p);
             out.block.copy_from_slice(mass.as_flattened());
             out.rows.copy_from_slice(self.system.reaction_rows(t, &q, &v).as_flattened());
-        } else {
+        } else if !out.momentum.is_empty() {
             out.momentum.copy_from_slice(&self.system.momentum(t, &q, &v));
         }
         out.level.copy_from_slice(&self.system.residual(t, &q, &v).map(|slip| -slip));
@@ -176,16 +176,23 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
         dla::turn(&self.system.angles(), &from_fn(|i| h * v[i]), |step| self.system.rows_along(t0, &q0, h, step))
     }
 
-    fn braking(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 3] {
+    fn power_sources(&self) -> PowerSources {
+        self.system.power_sources()
+    }
+
+    fn damping(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> f64 {
         let (q0, v, v1): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(v), local(v1));
         let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
-        let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
-        let (mean, end) = (self.system.momentum(t, &q, &v), self.system.momentum(t, &q, &v1));
-        let inertia = along(&|i| (v1[i] - v[i]) * (end[i] - mean[i]));
-        let all = along(&|i| (v[i] * mean[i]).abs());
         let forces = self.system.force(t, &q, &v).zip(self.system.force(t, &q, &v1));
-        let damping = forces.map_or(0.0, |(mean, end)| along(&|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])));
-        [damping, inertia, all]
+        forces.map_or(0.0, |(mean, end)| (0..N).map(|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])).sum())
+    }
+
+    fn inertia(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 2] {
+        let (q0, v, v1): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(v), local(v1));
+        let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
+        let (mean, end) = (self.system.momentum(t, &q, &v), self.system.momentum(t, &q, &v1));
+        let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
+        [along(&|i| (v1[i] - v[i]) * (end[i] - mean[i])), along(&|i| (v[i] * mean[i]).abs())]
     }
 
     fn not_a_number(&self, t: f64, q: &[f64], v: &[f64]) -> Option<NotANumber> {

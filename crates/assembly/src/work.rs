@@ -3,6 +3,7 @@ use crate::contributions::{at, gathered};
 use crate::element::{ElementBlocks, WIDEST};
 use crate::motion::ElementMotion;
 use dla::{Hermite, Place};
+use lagrangian::PowerSources;
 use lagrangian::quadrature::gauss_legendre;
 
 /// Integrates the work done on an assembly over a step.
@@ -57,23 +58,29 @@ impl Default for StepWork {
 
 impl StepWork {
     /// The work of a step from one place to another (J). The work is NaN if the accelerations are not determined.
-    pub(crate) fn between(&mut self, assembly: &Assembly, from: Place<'_>, to: Place<'_>) -> f64 {
+    pub(crate) fn between(
+        &mut self,
+        (assembly, sources): (&Assembly, PowerSources),
+        from: Place<'_>,
+        to: Place<'_>,
+    ) -> f64 {
         let [first, last] = &mut self.ends;
         if let Some(known) = self.known.filter(|_| first.is(from) && last.is(to)) {
             return known;
         }
         first.see(from, assembly.coordinates());
         last.see(to, assembly.coordinates());
-        let work = self.integrated(assembly);
+        let work = self.integrated(assembly, sources);
         self.known = Some(work);
         work
     }
 
-    fn integrated(&mut self, assembly: &Assembly) -> f64 {
+    fn integrated(&mut self, assembly: &Assembly, sources: PowerSources) -> f64 {
         let [first, last] = &self.ends;
         let (t0, t1) = (first.t, last.t);
-        let (h, moved) = (t1 - t0, moves(assembly, t0, &first.q) || moves(assembly, t1, &last.q));
-        if !moved && !self.is_powered(assembly, t0, h) {
+        let h = t1 - t0;
+        let moved = sources.constraints && (moves(assembly, t0, &first.q) || moves(assembly, t1, &last.q));
+        if !moved && !((sources.forces || sources.time) && self.is_powered(assembly, t0, h)) {
             return 0.0;
         }
         let motion = self.motion.get_or_insert_with(|| ElementMotion::of(assembly).map_err(|_| ()));
@@ -126,17 +133,12 @@ fn power(assembly: &Assembly, t: f64, q: &[f64], v: &[f64]) -> f64 {
 
 /// Whether a constraint moves: `b` does not vanish.
 pub(crate) fn moves(assembly: &Assembly, t: f64, q: &[f64]) -> bool {
-    let (mut momentum, mut level, rest) = ([0.0; WIDEST], [0.0; WIDEST], [0.0; WIDEST]);
+    let (mut level, rest) = ([0.0; WIDEST], [0.0; WIDEST]);
     assembly.placed().iter().filter(|placed| placed.rows > 0).any(|placed| {
         let (n, m) = (placed.at.len(), placed.rows);
         let level = &mut level[..m];
-        let out = ElementBlocks {
-            momentum: &mut momentum[..n],
-            level: &mut *level,
-            block: &mut [],
-            rows: &mut [],
-            derivatives: false,
-        };
+        let out =
+            ElementBlocks { momentum: &mut [], level: &mut *level, block: &mut [], rows: &mut [], derivatives: false };
         gathered(placed, |i| q[i], |q| placed.element.velocity(t, q, &rest[..n], out));
         level.iter().any(|b| *b != 0.0)
     })

@@ -25,6 +25,16 @@ impl PowerSources {
         self.time || self.forces || self.constraints
     }
 
+    /// The power sources of two systems together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            time: self.time || other.time,
+            forces: self.forces || other.forces,
+            constraints: self.constraints || other.constraints,
+        }
+    }
+
     /// The power sources of a system, found by tracing its functions without numbers.
     pub fn of<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys) -> Self {
         let (t, q) = (Traced::TIME, [Traced::STATE; N]);
