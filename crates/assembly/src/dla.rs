@@ -154,21 +154,23 @@ impl SparseDla {
         turns.fold(0.0, larger)
     }
 
+    /// The answer of an element to its numbers at the beginning of the step, its mean velocity and its velocity at the end.
+    fn of_both<T>(&self, placed: &PlacedElement, ask: impl Fn(&[f64], &[f64], &[f64]) -> T) -> T {
+        at(placed, &self.q0, &self.v, |q0, v| gathered(placed, |i| self.v1[i], |v1| ask(q0, v, v1)))
+    }
+
     /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`StepError::Overshoot`].
     fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), StepError> {
         /// If the change of the velocity is a smaller fraction of the velocity (squared), it is round-off.
         const ROUNDING: f64 = 1e-16;
-        let of = |placed: &PlacedElement, ask: &dyn Fn(&[f64], [&[f64]; 2]) -> [f64; 2]| {
-            at(placed, &self.q0, &self.v, |q0, v| gathered(placed, |i| self.v1[i], |v1| ask(q0, [v, v1])))
-        };
         let acting = || assembly.placed().iter().filter(|placed| placed.element.acts());
         let damping: f64 =
-            acting().map(|placed| of(placed, &|q0, v| [placed.element.damping(step, q0, v), 0.0])[0]).sum();
+            acting().map(|placed| self.of_both(placed, |q0, v, v1| placed.element.damping(step, q0, [v, v1]))).sum();
         if damping <= 0.0 {
             return Ok(());
         }
         let [inertia, all] = acting()
-            .map(|placed| of(placed, &|q0, v| placed.element.inertia(step, q0, v)))
+            .map(|placed| self.of_both(placed, |q0, v, v1| placed.element.inertia(step, q0, [v, v1])))
             .fold([0.0; 2], |[inertia, all], own| [inertia + own[0], all + own[1]]);
         if damping > inertia && inertia > ROUNDING * all {
             return Err(StepError::Overshoot { part: inertia / damping });
