@@ -20,6 +20,8 @@ const BELOW: f64 = 44.0;
 const ABOVE: f64 = 10.0;
 const BESIDE: f64 = 16.0;
 const TITLE: f64 = 12.0;
+/// The least length of an axis; on a paper that is too small for more, figures are cut off and curves are not.
+const SHORTEST: f64 = 20.0;
 /// The height of the sheet's title.
 const HEADING: f64 = 26.0;
 /// The ratio of width to height that a panel should have.
@@ -154,14 +156,14 @@ impl Panel {
         let mut x = Span::of(self.curves.iter().flatten().map(|point| point[0])).unwrap_or(nothing);
         let heights = curves.iter().flat_map(|points| points.iter()).filter(|point| drawable(point[0]));
         let mut y = Span::of(heights.map(|point| scale.of(point[1]))).unwrap_or(nothing);
-        let height = (height - ABOVE - BELOW).max(20.0);
+        let height = (height - ABOVE - BELOW).max(SHORTEST);
         y = if self.decades { whole_decades(y, 0.0) } else { Span::about(y.middle(), 1.06 * y.visible()) };
         let upwards = |y: Span| match self.decades {
             true => decades(y, (height / 24.0).max(2.0), 0.0),
             false => ticks(y, height / 34.0, height / 18.0),
         };
-        let margin_of = margin(&upwards(y)) + 2.0 * TITLE;
-        let width = (width - margin_of - BESIDE).max(20.0);
+        let margin_of = (margin(&upwards(y)) + 2.0 * TITLE).min((width - BESIDE - SHORTEST).max(0.0));
+        let width = (width - margin_of - BESIDE).max(SHORTEST.min(width));
         if self.path {
             // A metre is as long upwards as across.
             let unit = (1.06 * x.visible() / width).max(1.06 * y.visible() / height);

@@ -140,6 +140,13 @@ fn check_sheet(drawn: &Sheet, size: [f64; 2]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Figures of sixteen digits are wider than a paper of 3 cm.
+#[test]
+fn long_figures_push_no_curve_off_a_narrow_paper() {
+    let far = panel(["t [s]", "x [m]"], vec![vec![[0.0, -183_848_980_633_521.66]]]);
+    check_sheet(&one(vec![far]), [3.0, 30.58]).unwrap();
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(6))]
 
