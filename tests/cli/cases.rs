@@ -165,7 +165,7 @@ fn trains_end_where_they_should() {
 #[test]
 #[ignore = "slow"]
 fn trains_end_where_they_should_at_length() {
-    trains(&[("dla8", 1e-9), ("dla4", 1e-6), ("dla", 1e-3)], &["dla", "dla4"]);
+    trains(&[("dla8 --step 0.1", 1e-9), ("dla8", 1e-9), ("dla4", 1e-6), ("dla", 1e-3)], &["dla", "dla4"]);
 }
 
 /// What comes to rest, or hardly moves, goes on.

@@ -407,10 +407,21 @@ fn ctrl_c_keeps_the_run_and_its_nodes_at_length() {
 
 #[test]
 fn a_comparison_from_its_checkpoints_is_the_same() {
+    resumed_comparisons(" --set effects.0.count=3 --duration 0.06");
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_comparison_from_its_checkpoints_is_the_same_in_full() {
+    resumed_comparisons(" --duration 0.2");
+}
+
+/// Of a sleigh and of a train, the train with `more`.
+fn resumed_comparisons(more: &str) {
     let train = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/train.toml");
     for (scene, methods) in [("turnaround --duration 20", ["dla", "rk4"]), (train, ["dla", "dla4"])] {
         let folder = Folder::new();
-        let short = if scene == train { " --set effects.0.count=3 --duration 0.06" } else { "" };
+        let short = if scene == train { more } else { "" };
         let line = format!("compare {scene}{short} --methods {} --json", methods.join(","));
         let whole = folder.json(&line);
         let saved = folder.json(&format!("{line} --checkpoint saves --checkpoint-every 100"));

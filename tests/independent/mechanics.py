@@ -35,10 +35,14 @@ class System:
         self.q, self.v = (sp.Matrix(symbols) for symbols in zip(*map(coordinate, self.units)))
         self.size = len(self.units)
 
+    def momenta(self):
+        """`L_v`."""
+        return sp.Matrix([sp.diff(self.lagrangian, rate) for rate in self.v])
+
     def equations(self):
         """`[M, A'; A, 0] (a, lambda) = (f, gamma)`: M, f, A, gamma, and the constraints of positions and velocities."""
         q, v = self.q, self.v
-        p = sp.Matrix([sp.diff(self.lagrangian, rate) for rate in v])
+        p = self.momenta()
         force = sp.Matrix([sp.sympify(self.forces.get(name, 0)) for name in self.units])
         slope = sp.Matrix([sp.diff(self.lagrangian, place) for place in q])
         f = slope + force - p.jacobian(q) * v - p.diff(TIME)
@@ -78,8 +82,7 @@ class Numbers:
         self.formulas = [*mass, *f, *rows, *gamma, *g, *r]
         self.real = sp.lambdify(self.symbols, self.formulas, modules="math", cse=True)
         self.other = None
-        momenta = [sp.diff(system.lagrangian, rate) for rate in system.v]
-        energy = sum(p * rate for p, rate in zip(momenta, system.v)) - system.lagrangian
+        energy = system.momenta().dot(system.v) - system.lagrangian
         self.energy_at = sp.lambdify(self.symbols, energy, modules="math", cse=True)
 
     def energy(self, z, t):

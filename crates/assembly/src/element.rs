@@ -92,7 +92,7 @@ pub trait Element: Debug + Send + Sync {
     /// By how much a step turns the constraint that turns most (rad); zero where no angle turns far.
     fn turn(&self, step: (f64, f64), q0: &[f64], v: &[f64]) -> f64;
 
-    /// What may do work on it.
+    /// The kinds of power that the element may have.
     fn power_sources(&self) -> PowerSources;
 
     /// The damping of the change of velocity from the middle of a step to its end (J): see

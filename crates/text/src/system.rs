@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 /// A system of text, of `N` coordinates and `M` constraints, which answers what methods ask at the cost of its own size.
 ///
-/// First derivatives are formulas, and second derivatives are derivatives of the first along the directions of the system's own coordinates, by
-/// dual numbers. What fills the shape is written as constants. What is asked seldom comes from the [functions](TextFunctions).
+/// First derivatives are formulas, and second derivatives are derivatives of the first along the directions of the system's own
+/// coordinates, by dual numbers. What fills the shape is written as constants. What is asked seldom comes from the [functions](TextFunctions).
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSystem<const N: usize, const M: usize>(TextFunctions<N, M>);
 

@@ -54,7 +54,7 @@ pub struct Energies {
     /// The error at the last node, and the largest one (J).
     last: f64,
     largest: f64,
-    /// The error that was twice the one noted here before, or more, when the kinetic energy was last asked for (J).
+    /// The error when the kinetic energy was last asked for because the error had doubled (J).
     asked: f64,
     jump: Option<EnergyJump>,
     /// The largest change of a step that jumps (J).
