@@ -161,21 +161,16 @@ impl SparseDla {
 
     /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`StepError::Overshoot`].
     fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), StepError> {
-        /// If the change of the velocity is a smaller fraction of the velocity (squared), it is round-off.
-        const ROUNDING: f64 = 1e-16;
         let acting = || assembly.placed().iter().filter(|placed| placed.element.acts());
         let damping: f64 =
             acting().map(|placed| self.of_both(placed, |q0, v, v1| placed.element.damping(step, q0, [v, v1]))).sum();
         if damping <= 0.0 {
             return Ok(());
         }
-        let [inertia, all] = acting()
+        let inertia = acting()
             .map(|placed| self.of_both(placed, |q0, v, v1| placed.element.inertia(step, q0, [v, v1])))
             .fold([0.0; 2], |[inertia, all], own| [inertia + own[0], all + own[1]]);
-        if damping > inertia && inertia > ROUNDING * all {
-            return Err(StepError::Overshoot { part: inertia / damping });
-        }
-        Ok(())
+        dla::overshoot(damping, inertia)
     }
 }
 

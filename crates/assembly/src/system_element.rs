@@ -180,19 +180,12 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
         self.system.power_sources()
     }
 
-    fn damping(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> f64 {
-        let (q0, v, v1): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(v), local(v1));
-        let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
-        let forces = self.system.force(t, &q, &v).zip(self.system.force(t, &q, &v1));
-        forces.map_or(0.0, |(mean, end)| (0..N).map(|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])).sum())
+    fn damping(&self, step: (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> f64 {
+        dla::damping(&*self.system, step, &local(q0), [&local(v), &local(v1)])
     }
 
-    fn inertia(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 2] {
-        let (q0, v, v1): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(v), local(v1));
-        let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
-        let (mean, end) = (self.system.momentum(t, &q, &v), self.system.momentum(t, &q, &v1));
-        let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
-        [along(&|i| (v1[i] - v[i]) * (end[i] - mean[i])), along(&|i| (v[i] * mean[i]).abs())]
+    fn inertia(&self, step: (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 2] {
+        dla::inertia(&*self.system, step, &local(q0), [&local(v), &local(v1)])
     }
 
     fn not_a_number(&self, t: f64, q: &[f64], v: &[f64]) -> Option<NotANumber> {

@@ -49,6 +49,7 @@ pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind, has_deriv
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};
+pub use overshoot::{damping, inertia, overshoot};
 pub use power::{MeanPower, power};
 pub use rebased::Rebased;
 pub use reduced_field::{ReducedField, reduced_field};

@@ -22,26 +22,44 @@ pub(crate) fn brakes_only<const N: usize, const M: usize>(
     q0: &[f64; N],
     (v, v1): (&[f64; N], &[f64; N]),
 ) -> Result<(), StepError> {
-    let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
-    let Some((mean, end)) = system.force(t, &q, v).zip(system.force(t, &q, v1)) else { return Ok(()) };
-    let damping: f64 = (0..N).map(|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])).sum();
-    if damping > 0.0 { against_inertia(system, (t, &q), (v, v1), damping) } else { Ok(()) }
+    let damping = damping(system, (t0, h), q0, [v, v1]);
+    if damping > 0.0 { overshoot(damping, inertia(system, (t0, h), q0, [v, v1])) } else { Ok(()) }
 }
 
-/// The damping against the inertia, both along the change of velocity.
-#[inline(never)]
-fn against_inertia<const N: usize, const M: usize>(
+/// The damping of the change of velocity from the middle of a step to its end (J); zero without forces.
+#[inline(always)]
+pub fn damping<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
-    (t, q): (f64, &[f64; N]),
-    (v, v1): (&[f64; N], &[f64; N]),
-    damping: f64,
-) -> Result<(), StepError> {
-    /// Where the change of the velocity is a smaller part of the velocity (squared), it is round-off.
-    const ROUNDING: f64 = 1e-16;
-    let (mean, end) = (system.momentum(t, q, v), system.momentum(t, q, v1));
+    (t0, h): (f64, f64),
+    q0: &[f64; N],
+    [v, v1]: [&[f64; N]; 2],
+) -> f64 {
+    let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
+    let forces = system.force(t, &q, v).zip(system.force(t, &q, v1));
+    forces.map_or(0.0, |(mean, end)| (0..N).map(|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])).sum())
+}
+
+/// The inertia of that change, and `|v . p|` (J).
+#[inline(never)]
+pub fn inertia<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    (t0, h): (f64, f64),
+    q0: &[f64; N],
+    [v, v1]: [&[f64; N]; 2],
+) -> [f64; 2] {
+    let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
+    let (mean, end) = (system.momentum(t, &q, v), system.momentum(t, &q, v1));
     let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
-    let inertia = along(&|i| (v1[i] - v[i]) * (end[i] - mean[i]));
-    let all = along(&|i| (v[i] * mean[i]).abs());
+    [along(&|i| (v1[i] - v[i]) * (end[i] - mean[i])), along(&|i| (v[i] * mean[i]).abs())]
+}
+
+/// Compares the damping of a step with its inertia.
+///
+/// # Errors
+/// [`StepError::Overshoot`] if the damping is larger.
+pub fn overshoot(damping: f64, [inertia, all]: [f64; 2]) -> Result<(), StepError> {
+    /// If the change of the velocity is a smaller fraction of the velocity (squared), it is round-off.
+    const ROUNDING: f64 = 1e-16;
     if damping > inertia && inertia > ROUNDING * all {
         return Err(StepError::Overshoot { part: inertia / damping });
     }
