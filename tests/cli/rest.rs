@@ -65,8 +65,7 @@ fn every_method_comes_to_rest_in_a_well() {
 #[ignore = "slow"]
 fn every_method_comes_to_rest_in_a_well_at_length() {
     let methods = crate::program::methods();
-    // Series are for wells without drag.
-    let methods: Vec<&str> = methods.iter().map(String::as_str).filter(|method| *method != "taylor").collect();
+    let methods: Vec<&str> = methods.iter().map(String::as_str).collect();
     let settled = settled(&WELLS, STEPS, &methods);
     assert!(settled > 50, "{settled} runs have come to rest");
 }

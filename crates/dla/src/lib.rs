@@ -22,7 +22,7 @@ use mechanics::{dependent, dropping, known_angle, not_a_number, power, reduced_f
 use methods::dla::{
     continued, corrections, derivatives, discrete_lagrangian, discretisation, increment, kept, mean, past,
 };
-use methods::{baseline, composition, dla, energy, gauss, gni, hermite, lobatto, rebased, reduced_flow};
+use methods::{baseline, composition, dla, energy, gauss, gni, hermite, lobatto, rebased, reduced_flow, taylor};
 use solve::{branch, history, newton, overshoot, positions, projection};
 use step::{assembly_fault, closed_step_error, hint, one_step, resolved, runaway, stack, state};
 
@@ -44,7 +44,9 @@ pub use hint::Hint;
 pub use history::History;
 pub use known_angle::KnownAngle;
 pub use lobatto::{LinearisedStage, Lobatto, LobattoTables, StagePoint};
-pub use mechanics::{Diagnosis, FullMechanics, Mechanics, RoundedMechanics, SecondSlopes, SeededMechanics, Slopes};
+pub use mechanics::{
+    Diagnosis, FullMechanics, Mechanics, ReducedSeries, RoundedMechanics, SecondSlopes, SeededMechanics, Slopes,
+};
 pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind, has_derivatives, has_tangents};
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
@@ -72,3 +74,4 @@ pub use sensitivity::{
 pub use stack::StackUse;
 pub use start::{Start, consistent_start, slip};
 pub use state::State;
+pub use taylor::Taylor;

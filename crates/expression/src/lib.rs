@@ -8,7 +8,7 @@
 //! 2. A [`Graph`] holds expressions, each of them once, simplified as they are made; it [derives](Graph::derivative) them,
 //!    [replaces](Graph::substitute) variables, and writes them as [text](Graph::text) or as [Rust](Graph::rust).
 //! 3. A [`Tape`] is a list of operations for some of them, evaluated on any [`Scalar`](scalar::Scalar), and counted as a [`Cost`]; on a
-//!    [`Series`] for derivatives of high order.
+//!    [`Series`] for derivatives of high order. [`Recurrences`] give the Taylor series of the solutions of differential equations.
 //! 4. [`Corners`] are the times at which they are not smooth.
 //!
 //! ```
@@ -54,7 +54,9 @@ mod graph;
 mod interval;
 mod names;
 mod parser;
+mod recurrences;
 mod series;
+mod symbol;
 mod syntax;
 mod tape;
 mod tokens;
@@ -65,6 +67,8 @@ pub use function::Function;
 pub use graph::{Expression, Graph, Statements, Turned};
 pub use names::{Names, nearest};
 pub use parser::{Limits, parse, parse_within};
+pub use recurrences::{Expansion, MOST_ORDERS, Recurrences};
 pub use series::Series;
+pub use symbol::{Symbol, trace};
 pub use syntax::Syntax;
 pub use tape::{Cost, Tape};

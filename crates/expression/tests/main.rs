@@ -16,6 +16,7 @@ mod formulas;
 mod hostile;
 mod large;
 mod parsing;
+mod recurrences;
 mod rust_text;
 mod simplification;
 mod tape;

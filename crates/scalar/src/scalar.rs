@@ -136,6 +136,12 @@ pub trait Scalar:
     fn carried_as(self, _other: Self) -> Self {
         self
     }
+    /// `self factor + term`, rounded once where the build is for machines with such an instruction.
+    #[must_use]
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
     /// Zero.
     #[must_use]
     #[inline(always)]
@@ -281,6 +287,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn apply<F: ScalarFunction>(self, f: F) -> Self {
         f.value(self)
+    }
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        mul_add(self, factor, term)
     }
     #[inline(always)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {

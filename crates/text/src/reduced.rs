@@ -2,8 +2,9 @@
 
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextFunctions, TextModel};
-use expression::Expression;
+use dla::ReducedSeries;
 use expression::formulas::{Formulas, ReducedFormulas};
+use expression::{Expression, Recurrences};
 use lagrangian::{Pivots, Reduced, ReducedError, Scalar, StageEvaluation};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -24,6 +25,7 @@ pub(crate) struct EquationsOfBasis {
     velocity: OnceLock<Option<Tapes>>,
     turning: OnceLock<Option<Tapes>>,
     reduced: OnceLock<Option<ReducedTapes>>,
+    recurrences: OnceLock<Option<Arc<Recurrences>>>,
 }
 
 /// The equations in one basis, shared by all systems of a model with the same basis.
@@ -89,6 +91,14 @@ impl TextModel {
         Some(ReducedTapes { acceleration, reconstruction, stands_alone })
     }
 
+    /// The recurrences of the coordinates and the quasi-velocities.
+    fn recurrences(&self, pivots: &Pivots) -> Option<Arc<Recurrences>> {
+        let (formulas, reduced) = self.reduced_formulas(pivots)?;
+        let rates = [&reduced.velocity[..], &reduced.acceleration].concat();
+        let variables: Vec<u32> = (1..=rates.len() as u32).collect();
+        Recurrences::new(&formulas.graph, &rates, &variables).ok().map(Arc::new)
+    }
+
     /// The reduced equations in the basis in use; `None` if they are too large.
     pub(crate) fn reduced_formulas(&self, pivots: &Pivots) -> Option<(Formulas, ReducedFormulas)> {
         let (mut formulas, basis) = self.formulas_in_basis(pivots);
@@ -111,6 +121,16 @@ impl<const N: usize, const M: usize> TextFunctions<N, M> {
     /// The derivatives of the basis, as formulas; `None` if they are too large.
     pub(crate) fn turning(&self) -> Option<&Tapes> {
         self.equations.turning.get_or_init(|| self.model.clocked(|| self.model.turning(&self.pivots))).as_ref()
+    }
+
+    /// The series of the motion.
+    pub(crate) fn series(&self) -> Result<ReducedSeries, &'static str> {
+        const TOO_LARGE: &str = "the reduced equations, from which series are made, are too large";
+        let derived =
+            self.equations.recurrences.get_or_init(|| self.model.clocked(|| self.model.recurrences(&self.pivots)));
+        let recurrences = Arc::clone(derived.as_ref().ok_or(TOO_LARGE)?);
+        let n = self.n();
+        Ok(ReducedSeries { recurrences, coordinates: n, constants: (1 + 2 * n, Arc::clone(&self.sides)) })
     }
 
     fn equations(&self) -> Option<&ReducedTapes> {

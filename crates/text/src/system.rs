@@ -1,8 +1,8 @@
 use crate::family::SeededText;
 use crate::{TextFunctions, TextModel};
 use dla::{
-    Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, PiecewiseMechanics, RoundedMechanics,
-    SecondSlopes, SeededMechanics, Slopes,
+    Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, PiecewiseMechanics, ReducedSeries,
+    RoundedMechanics, SecondSlopes, SeededMechanics, Slopes,
 };
 use lagrangian::linear::Singular;
 use lagrangian::{
@@ -163,6 +163,10 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for TextSystem<N, M> {
             }
         });
         node
+    }
+
+    fn series(&self) -> Result<ReducedSeries, &'static str> {
+        self.0.series()
     }
 
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]> {

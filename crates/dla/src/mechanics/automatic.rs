@@ -1,6 +1,6 @@
 //! Every system answers by automatic derivatives.
 
-use super::{Mechanics, SecondSlopes, Slopes};
+use super::{Mechanics, ReducedSeries, SecondSlopes, Slopes};
 use crate::gauss::{Collocation, CollocationOutcome, collocate};
 use lagrangian::linear::Singular;
 use lagrangian::{
@@ -61,6 +61,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
 
     fn smoothness(&self) -> Smoothness {
         Smoothness::of(self)
+    }
+
+    fn series(&self) -> Result<ReducedSeries, &'static str> {
+        super::series::traced(self)
     }
 
     fn power_sources(&self) -> PowerSources {

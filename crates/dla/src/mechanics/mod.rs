@@ -10,12 +10,14 @@ pub(crate) mod power;
 pub(crate) mod reduced_field;
 mod rounded;
 mod seeded;
+mod series;
 pub(crate) mod start;
 pub(crate) mod suspect;
 
 pub use diagnosis::Diagnosis;
 pub use rounded::RoundedMechanics;
 pub use seeded::{FullMechanics, SeededMechanics};
+pub use series::ReducedSeries;
 
 use crate::gauss::{Collocation, CollocationOutcome};
 use lagrangian::{
@@ -92,6 +94,12 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
 
     /// How smooth the functions of the system are.
     fn smoothness(&self) -> Smoothness;
+
+    /// The reduced equations as recurrences of Taylor coefficients.
+    ///
+    /// # Errors
+    /// The reason, if the system has none.
+    fn series(&self) -> Result<ReducedSeries, &'static str>;
 
     /// The sources that may do work on the system.
     fn power_sources(&self) -> PowerSources;

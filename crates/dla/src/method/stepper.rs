@@ -2,8 +2,8 @@
 
 use super::table::NOT_HERE;
 use crate::{
-    Composition, Differentiable, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods,
-    Rebased, SensitivityError, State, StepError, StepReport, Stepper,
+    Composition, Differentiable, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, OwnMethods, Rebased,
+    SensitivityError, Stepper, Taylor,
 };
 use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
 
@@ -45,7 +45,7 @@ impl Method {
             MethodKind::Rk4Reduced => (Box::new(Rk4Reduced), true),
             MethodKind::ImplicitMidpoint => (Box::new(ImplicitMidpoint::default()), true),
             MethodKind::Dop853 => (Box::new(Dop853::<N, M>::new(self.tolerance())), false),
-            MethodKind::Taylor => return Box::new(NoSeries),
+            MethodKind::Taylor => (Box::new(Taylor::<N>::new(self.tolerance())), false),
             MethodKind::Rk4 => return Box::new(Rk4),
             MethodKind::Rk4Projected => return Box::new(Rk4Projected),
         };
@@ -118,23 +118,5 @@ fn energy(stages: usize) -> Energy {
         2 => Energy::new::<2>(),
         3 => Energy::new::<3>(),
         _ => Energy::new::<4>(),
-    }
-}
-
-/// The method `taylor` on a system that brings no series.
-struct NoSeries;
-
-impl<const N: usize, const M: usize> OneStep<N, M> for NoSeries {
-    fn step(
-        &mut self,
-        _system: &dyn Mechanics<N, M>,
-        _t: f64,
-        _h: f64,
-        _state: &mut State<N>,
-    ) -> Result<StepReport<M>, StepError> {
-        Err(StepError::Unsupported {
-            reason: "series need a sleigh whose equations are of second degree in axes that turn with it: free, in a round well, under a \
-                     constant thrust or torque, with viscous drag or without",
-        })
     }
 }

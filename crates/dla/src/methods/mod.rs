@@ -10,3 +10,4 @@ pub(crate) mod hermite;
 pub(crate) mod lobatto;
 pub(crate) mod rebased;
 pub(crate) mod reduced_flow;
+pub(crate) mod taylor;

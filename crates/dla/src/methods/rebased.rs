@@ -121,7 +121,7 @@ impl<Method> Rebased<Method> {
         system.near(time, place, number, &mut |number, near| {
             if number != known {
                 // The memory belongs to the other basis.
-                method.recall(&[], state);
+                method.forget(state);
                 state.advance(&[0.0; N], *state.v(), None);
             }
             *basis = number;
@@ -186,7 +186,7 @@ where
                     if total.is_some() || self.basis != basis {
                         // The memory of the method belongs to another place or another basis.
                         self.basis = basis;
-                        self.method.recall(&[], state);
+                        self.method.forget(state);
                     }
                     return Err(error);
                 }
@@ -201,7 +201,10 @@ where
 
     fn recall(&mut self, memory: &[f64], state: &State<N>) {
         let (basis, own) = memory.split_last().unwrap_or((&0.0, &[]));
-        self.basis = *basis as u64;
+        if self.basis != *basis as u64 {
+            self.basis = *basis as u64;
+            self.method.forget(state);
+        }
         self.method.recall(own, state);
     }
 

@@ -1,7 +1,8 @@
 //! A system that counts how often it is evaluated.
 
 use crate::{
-    Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, RoundedMechanics, SecondSlopes, Slopes,
+    Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, ReducedSeries, RoundedMechanics, SecondSlopes,
+    Slopes,
 };
 use lagrangian::linear::Singular;
 use lagrangian::{
@@ -70,6 +71,7 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         1 at_node(t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N>;
         some force(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
         0 smoothness() -> Smoothness;
+        0 series() -> Result<ReducedSeries, &'static str>;
         0 power_sources() -> PowerSources;
         some force_power(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;
         1 lagrangian_power(t: f64, q: &[f64; N], v: &[f64; N]) -> f64;

@@ -1,4 +1,5 @@
-use crate::{AnyState, Method, Observer, Report, StepError, View, again};
+use super::substeps::Again;
+use crate::{AnyState, Method, Observer, Report, StepError, View};
 use std::ops::ControlFlow;
 
 /// The observer that takes the state at given times, wherever the nodes are.
@@ -44,7 +45,7 @@ impl<'a> Samples<'a> {
     }
 
     fn take(&mut self, node: &View<'_>, (t0, start): (f64, &AnyState)) {
-        let forward = (node.t - t0).signum();
+        let (forward, mut shorter) = ((node.t - t0).signum(), None);
         while let Some(t) = self.times.get(self.taken.len()).copied()
             && self.failure.is_none()
         {
@@ -56,7 +57,11 @@ impl<'a> Samples<'a> {
             let mut state = if left == 0.0 { node.state.clone() } else { start.clone() };
             if since > 0.0
                 && left > 0.0
-                && let Err(error) = again(node.system, self.method, (t0, t - t0), &mut state, false)
+                && let Err(error) = shorter.get_or_insert_with(|| Again::new(node.system, self.method)).step(
+                    (t0, t - t0),
+                    &mut state,
+                    false,
+                )
             {
                 self.failure = Some(error);
                 return;

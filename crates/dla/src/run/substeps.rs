@@ -148,8 +148,6 @@ fn resolves(
 
 /// A step of a method by itself, without the memory of other steps, as a run of its own; with its work if that is asked for.
 ///
-/// It uses the code of whole runs, and makes the method each time: for the few steps between nodes.
-///
 /// # Errors
 /// [`StepError`] if the step has no solution; the state is then unchanged.
 pub fn again(
@@ -159,7 +157,24 @@ pub fn again(
     state: &mut AnyState,
     work: bool,
 ) -> Result<Report, StepError> {
-    alone(system, &mut *system.integrator(method), method.substeps(), time, state, work)
+    Again::new(system, method).step(time, state, work)
+}
+
+/// Steps of a method by themselves, as those of [`again`]: for several steps from a node.
+pub(super) struct Again<'a> {
+    system: &'a dyn Mechanism,
+    limits: Option<Substeps>,
+    integrator: Box<dyn Integrator + 'a>,
+}
+
+impl<'a> Again<'a> {
+    pub(super) fn new(system: &'a dyn Mechanism, method: &Method) -> Self {
+        Self { system, limits: method.substeps(), integrator: system.integrator(method) }
+    }
+
+    pub(super) fn step(&mut self, time: (f64, f64), state: &mut AnyState, work: bool) -> Result<Report, StepError> {
+        alone(self.system, &mut *self.integrator, self.limits, time, state, work)
+    }
 }
 
 /// One step by itself, without the memory of the method.

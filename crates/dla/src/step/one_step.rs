@@ -41,6 +41,11 @@ pub trait OneStep<const N: usize, const M: usize> {
     /// Restores the memory that [`memory`](Self::memory) gave when the run was at `state`.
     fn recall(&mut self, _memory: &[f64], _state: &State<N>) {}
 
+    /// Forgets all that depends on the system: the next step is one of another system, or in another basis.
+    fn forget(&mut self, state: &State<N>) {
+        self.recall(&[], state);
+    }
+
     /// Asks for the work that these sources do in the steps to come, in [`StepReport::work`]. A method of high order, or with steps of its
     /// own, integrates the power as it does the motion; no observer can with its accuracy. Other methods report none: their order is not
     /// above the order of [`Work`](crate::Work).
@@ -97,6 +102,10 @@ macro_rules! behind {
 
             fn recall(&mut self, memory: &[f64], state: &State<N>) {
                 (**self).recall(memory, state);
+            }
+
+            fn forget(&mut self, state: &State<N>) {
+                (**self).forget(state);
             }
 
             fn measure_work(&mut self, sources: PowerSources) {

@@ -225,6 +225,18 @@ impl<const N: usize> State<N> {
         Self { v: flipped(self.v), left, past: Past::new(), ..*self }
     }
 
+    /// The configuration with the rest of its sums and its full turns, as a list.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.q.into_iter().chain(self.rest).chain(self.turns)
+    }
+
+    /// The state at the configuration that [`numbers`](Self::numbers) gave, at rest.
+    pub(crate) fn with_numbers(&self, numbers: &[f64]) -> Self {
+        let row = |from: usize| from_fn(|i| numbers.get(from + i).copied().unwrap_or(f64::NAN));
+        let (q, rest, turns) = (row(0), row(N), row(2 * N));
+        Self { q, rest, turns, v: [0.0; N], left: Left::Nothing, past: Past::new(), ..*self }
+    }
+
     /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
         checkpoint.put("q", &self.q);

@@ -12,8 +12,8 @@ pub use cost::Cost;
 
 use crate::function::{flat_power, length};
 use crate::{Error, Expression, Graph};
-use operation::{Instruction, Operation};
-use program::Program;
+pub(crate) use operation::{Instruction, Operation};
+pub(crate) use program::Program;
 use scalar::Scalar;
 
 /// A list of operations for some expressions, evaluated on any [`Scalar`]: on numbers, dual numbers, and numbers side by side.

@@ -29,11 +29,9 @@ pub fn method(name: &str) -> Method {
 
 /// Why a method cannot do a system with these facts: what its error must speak of.
 pub fn refuses(info: &MethodInfo, facts: &Facts) -> Option<&'static str> {
-    let reduced = info.name.starts_with("gauss") || matches!(info.name, "rk4-reduced" | "dop853");
+    let reduced = info.name.starts_with("gauss") || matches!(info.name, "rk4-reduced" | "dop853" | "taylor");
     let energy = info.name.starts_with("energy");
     match facts {
-        // What a sleigh brings of its own is not asked of these systems.
-        _ if info.name == "taylor" => Some("series"),
         Facts { without_basis: true, .. } if reduced || energy => Some("basis"),
         Facts { affine: true, .. } if energy => Some("b = 0"),
         Facts { positions: true, .. } if energy || info.name == "gni" => Some("positions"),

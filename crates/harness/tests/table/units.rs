@@ -44,8 +44,8 @@ fn ends(words: &Words, name: &str, [time, _]: [i32; 2], more: f64, steps: u64) -
 
 fn same_in(units: &[[i32; 2]], methods: &Methods, steps: u64) {
     let mut seen = 0;
-    // `taylor` is for sleighs alone, and the tolerance of an adaptive method has the units of the unknowns.
-    for info in methods.iter().filter(|info| info.name != "taylor" && !info.kind.is_adaptive()) {
+    // The tolerance of an adaptive method has the units of the unknowns.
+    for info in methods.iter().filter(|info| !info.kind.is_adaptive()) {
         let words = if info.name.starts_with("energy") { free } else { forced };
         let run = |units, more| ends(&words(units), info.name, units, more, steps);
         let base = run([0; 2], 0.0);

@@ -1,12 +1,13 @@
 use super::finer::Between;
 use super::zeros::{Zeros, in_order, zeros_by};
 use super::{Crossing, Event, Zero};
-use crate::{AnyState, Mechanism, Method, Report, again};
+use crate::run::substeps::Again;
+use crate::{AnyState, Report};
+use std::cell::RefCell;
 
 /// A step, or one that a method makes of its own within it, to be made again in parts.
 pub(super) struct EventInterval<'a> {
-    pub(super) system: &'a dyn Mechanism,
-    pub(super) method: &'a Method,
+    pub(super) again: RefCell<Again<'a>>,
     pub(super) t0: f64,
     pub(super) h: f64,
     pub(super) start: &'a AnyState,
@@ -22,7 +23,7 @@ impl EventInterval<'_> {
     /// solution.
     pub(super) fn after(&self, part: f64, work: bool) -> Option<(AnyState, Report)> {
         let mut state = self.start.clone();
-        let report = again(self.system, self.method, (self.t0, part * self.h), &mut state, work).ok()?;
+        let report = self.again.borrow_mut().step((self.t0, part * self.h), &mut state, work).ok()?;
         Some((state, report))
     }
 

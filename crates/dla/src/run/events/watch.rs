@@ -1,6 +1,8 @@
 use super::interval::EventInterval;
 use super::{Close, Crossing, Event, close_crossings};
+use crate::run::substeps::Again;
 use crate::{AnyState, Method, Observer, Report, StepError, Undivided, View};
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 /// A crossing within this number of roundings after the start of a run belongs to the start.
@@ -116,10 +118,10 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         if let Some((t0, start)) = self.before.take() {
             self.look_within(node, (t0, &start));
             if let Some((crossing, _)) = &self.ended {
-                let (system, method, h) = (node.system, self.method, node.t - t0);
-                let step = EventInterval { system, method, t0, h, start: &start, end: node.state };
+                let (again, h) = (RefCell::new(Again::new(node.system, self.method)), node.t - t0);
+                let step = EventInterval { again, t0, h, start: &start, end: node.state };
                 let ended = step.after((crossing.t - t0) / h, self.inner.measures_work()).map(|(_, report)| report);
-                let last = View { system, k: node.k, t: crossing.t, state: &crossing.state };
+                let last = View { system: node.system, k: node.k, t: crossing.t, state: &crossing.state };
                 // The run ends here, whatever the inner observer says.
                 let _ = self.inner.step(&last, ended.as_ref().unwrap_or(report));
                 return ControlFlow::Break(());
@@ -155,7 +157,8 @@ impl<'a, Inner: Observer> Watch<'a, Inner> {
         (t0, start): (f64, &AnyState),
         (t, end): (f64, &AnyState),
     ) -> ControlFlow<()> {
-        let interval = EventInterval { system: node.system, method: self.method, t0, h: t - t0, start, end };
+        let again = RefCell::new(Again::new(node.system, self.method));
+        let interval = EventInterval { again, t0, h: t - t0, start, end };
         let (mut found, incomplete) =
             interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
         self.incomplete += incomplete;

@@ -1,0 +1,358 @@
+use super::center::Center;
+use super::pace::Pace;
+use super::root::first_negative;
+use crate::{MeanPower, Mechanics, ReducedSeries, State, StepError, power};
+use expression::Expansion;
+use lagrangian::linear::larger;
+use lagrangian::quadrature::{gauss_legendre, shifted_legendre};
+use lagrangian::{PowerSources, Smoothness, added, from_fn, mul_add};
+
+/// The equations of a system, and the polynomial about a center that solves them.
+#[derive(Debug, Clone)]
+pub(super) struct Polynomial {
+    of: ReducedSeries,
+    series: Expansion<f64>,
+    pace: Pace,
+    tolerance: f64,
+    smoothness: Smoothness,
+    /// The time of the center (s), as long as the coefficients belong to it.
+    about: Option<f64>,
+    /// Room for the unknowns at a center, for increments and for rates.
+    start: Vec<f64>,
+    increments: Vec<f64>,
+    rates: Vec<f64>,
+    /// The Legendre series of the power along the polynomial, once it was asked for.
+    power: Option<[f64; NODES]>,
+}
+
+/// Smallest unit of time (s).
+const LEAST_UNIT: f64 = 1e-290;
+/// Longest polynomial, in its own unit of time.
+const LONGEST: f64 = 1e6;
+/// Part of a polynomial that is trusted if a length begins with zero, where it has no series.
+const FROM_ZERO: f64 = 1e-7;
+/// Points at which the equations are asked in a polynomial much longer than the last, and in any other, if the state does not tell all that
+/// may happen on the way.
+const POINTS: [u32; 2] = [3, 9];
+/// Number of places at which the power is evaluated along a polynomial.
+const NODES: usize = 16;
+/// Largest defect of the equations along a polynomial, in tolerances; the part of it that is rounding, and of the change of an unknown.
+const DEFECT: f64 = 1e3;
+const ROUNDING: f64 = 1e-13;
+const ROUNDING_OF_CHANGE: f64 = 1e-11;
+
+impl Polynomial {
+    pub(super) fn of<const N: usize, const M: usize>(
+        system: &dyn Mechanics<N, M>,
+        tolerance: f64,
+    ) -> Result<Self, StepError> {
+        let of = system.series().map_err(|reason| StepError::Unsupported { reason })?;
+        let (series, unknowns) = (Expansion::new(&of.recurrences), of.recurrences.unknowns());
+        let [start, increments, rates] = [(); 3].map(|()| vec![0.0; unknowns]);
+        let (pace, smoothness) = (Pace::of(tolerance), system.smoothness());
+        Ok(Self { of, series, pace, tolerance, smoothness, about: None, start, increments, rates, power: None })
+    }
+
+    /// Forgets the coefficients.
+    pub(super) fn forget(&mut self) {
+        self.about = None;
+    }
+
+    /// The polynomial from a node on.
+    pub(super) fn begin<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        state: &State<N>,
+    ) -> Result<Center<N>, StepError> {
+        let mut center = Center {
+            t,
+            state: *state,
+            xi: [state.quasi_velocities(system, t)?, [0.0; N]],
+            unit: power_of_two(h.abs().min(1.0)),
+            full: 0.0,
+            forward: h > 0.0,
+            sides: vec![0.0; self.of.recurrences.corners()].into(),
+            corner: None,
+            turned: None,
+        };
+        self.expand(&mut center)?;
+        self.settle(system, &mut center, None)?;
+        Ok(center)
+    }
+
+    /// Goes on to the polynomial that begins at the end of this one. Returns false if the equations there are not those of the polynomial: it
+    /// is then made shorter, and nothing else changes.
+    pub(super) fn go_on<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        center: &mut Center<N>,
+    ) -> Result<bool, StepError> {
+        let (t, full) = (center.end(), center.full);
+        let before = self.doubted().then(|| center.clone());
+        if before.is_some() {
+            self.rates_at(center, t - center.t);
+        }
+        self.advance(center, t)?;
+        (center.t, center.unit) = (t, power_of_two(full));
+        let corner = center.corner.take();
+        center.turned = corner;
+        if let Some(corner) = corner {
+            center.sides = center.sides.iter().enumerate().map(|(k, s)| if k == corner { -s } else { *s }).collect();
+        }
+        self.expand(center)?;
+        if let Some(mut before) = before.filter(|_| corner.is_none() && self.refuted(center.unit, full)) {
+            before.full *= 0.25;
+            *center = before;
+            self.expand(center)?;
+            return Ok(false);
+        }
+        self.settle(system, center, Some(full))?;
+        Ok(true)
+    }
+
+    /// Whether coefficients may be too small to tell of what is ahead: those of polynomials, sines and cosines are not.
+    fn doubted(&self) -> bool {
+        self.smoothness.driven || self.smoothness.narrow
+    }
+
+    /// The state on the polynomial at a time (s).
+    pub(super) fn at<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        center: &Center<N>,
+        t: f64,
+    ) -> Result<State<N>, StepError> {
+        let mut place = center.clone();
+        self.advance(&mut place, t)?;
+        let Center { mut state, xi: [xi, _], .. } = place;
+        let v = system.velocity_of(t, state.q(), &xi)?;
+        state.stays_finite(&[0.0; N], &v)?;
+        state.advance(&[0.0; N], v, Some(xi));
+        Ok(state)
+    }
+
+    /// The work that some sources do between two times (s) on the polynomial about a center: the integral of the power's Legendre series.
+    pub(super) fn work<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        sources: PowerSources,
+        center: &Center<N>,
+        [from, to]: [f64; 2],
+    ) -> f64 {
+        let (begin, length) = (center.t, center.end() - center.t);
+        let series = match self.power {
+            Some(series) => series,
+            None => {
+                let (nodes, weights) = gauss_legendre::<NODES>();
+                let powers = nodes.map(|node| {
+                    let t = begin + node * length;
+                    self.at(system, center, t).map_or(f64::NAN, |at| power(system, sources, t, (at.q(), at.v())))
+                });
+                // A power that is not known at one place is the mean of those at the others.
+                let mut mean = MeanPower::default();
+                powers.iter().zip(weights).for_each(|(power, weight)| mean.add(weight, *power));
+                let powers = powers.map(|power| if power.is_finite() { power } else { mean.mean() });
+                let polynomials = nodes.map(|node| shifted_legendre::<NODES>(node).0);
+                let sum = |l: usize| (0..NODES).map(|i| weights[i] * powers[i] * polynomials[i][l]).sum::<f64>();
+                *self.power.insert(from_fn(|l| (2 * l + 1) as f64 * sum(l)))
+            }
+        };
+        let ends = [from, to].map(|t| shifted_legendre::<{ NODES + 1 }>((t - begin) / length).0);
+        // The integral of the polynomial `l` is `(P_(l+1) - P_(l-1))/(2 l + 1)`.
+        let between = |l: usize| ends[1][l] - ends[0][l];
+        let rest = (1..NODES).map(|l| series[l] * (between(l + 1) - between(l - 1)) / (2 * l + 1) as f64);
+        0.5 * length * rest.fold(series[0] * between(1), |sum, x| sum + x)
+    }
+
+    /// Makes sure that the coefficients are those of a center.
+    pub(super) fn refresh<const N: usize>(&mut self, center: &mut Center<N>) -> Result<(), StepError> {
+        let same = self.about.is_some_and(|t| t.to_bits() == center.t.to_bits());
+        if same { Ok(()) } else { self.expand(center) }
+    }
+
+    /// Moves place and quasi-velocities along the polynomial about a center, to a time (s).
+    fn advance<const N: usize>(&mut self, center: &mut Center<N>, t: f64) -> Result<(), StepError> {
+        let s = (t - center.t) / center.unit;
+        self.increments.fill(0.0);
+        for k in (1..=self.series.order()).rev() {
+            for (sum, c) in self.increments.iter_mut().zip(self.series.coefficients(k)) {
+                *sum = mul_add(*sum, s, *c);
+            }
+        }
+        let (places, velocities) = self.increments.split_at(self.of.coordinates);
+        let increment = |row: &[f64], k: usize| row.get(k).map_or(0.0, |x| x * s);
+        let increments: [f64; N] = from_fn(|i| increment(places, i));
+        let [xi, rest] = &mut center.xi;
+        for k in 0..velocities.len().min(N) {
+            (xi[k], rest[k]) = added(xi[k], increment(velocities, k) + rest[k]);
+        }
+        center.state.stays_finite(&increments, xi)?;
+        center.state.advance(&increments, [0.0; N], None);
+        Ok(())
+    }
+
+    /// The rates of the unknowns on the polynomial, at a time since its center (s).
+    fn rates_at<const N: usize>(&mut self, center: &Center<N>, s: f64) {
+        let s = s / center.unit;
+        self.rates.resize(self.start.len(), 0.0);
+        self.rates.fill(0.0);
+        for k in (1..=self.series.order()).rev() {
+            for (sum, c) in self.rates.iter_mut().zip(self.series.coefficients(k)) {
+                *sum = mul_add(*sum, s, k as f64 * c);
+            }
+        }
+        for rate in &mut self.rates {
+            *rate /= center.unit;
+        }
+    }
+
+    /// Whether the rates about a new center, in a unit of time, are others than a polynomial of this length (s) foretold.
+    fn refuted(&self, unit: f64, full: f64) -> bool {
+        let rates = self.series.coefficients(1);
+        (0..rates.len()).any(|j| self.refutes(j, self.rates[j], rates[j] / unit, full))
+    }
+
+    /// Whether a rate of an unknown is another than a polynomial of this length (s) foretold.
+    fn refutes(&self, unknown: usize, foretold: f64, rate: f64, full: f64) -> bool {
+        let size = 1.0 + self.start[unknown].abs();
+        let allowed = (DEFECT * self.tolerance + ROUNDING) * size + ROUNDING_OF_CHANGE * full * rate.abs();
+        let defect = (rate - foretold).abs() * full;
+        defect > allowed || defect.is_nan()
+    }
+
+    /// Computes the coefficients about a center, in a smaller unit of time if they overflow.
+    fn expand<const N: usize>(&mut self, center: &mut Center<N>) -> Result<(), StepError> {
+        self.power = None;
+        let (places, velocities) = self.start.split_at_mut(self.of.coordinates);
+        places.iter_mut().zip(center.state.q()).for_each(|(x, q)| *x = *q);
+        velocities.iter_mut().zip(&center.xi[0]).for_each(|(x, xi)| *x = *xi);
+        let (first, constants) = &self.of.constants;
+        let other = |k: usize| k.checked_sub(*first).and_then(|k| constants.get(k)).copied().unwrap_or(0.0);
+        while center.unit > LEAST_UNIT {
+            let at = (center.t, &self.start[..], &*center.sides);
+            self.series.expand_with(&self.of.recurrences, at, center.unit, self.pace.order, other);
+            let finite = |k: usize| self.series.coefficients(k).iter().all(|c| c.is_finite());
+            if finite(self.pace.order) && finite(self.pace.order - 1) {
+                self.about = Some(center.t);
+                return Ok(());
+            }
+            center.unit *= 2f64.powi(-12);
+        }
+        self.about = None;
+        Err(StepError::NotFinite)
+    }
+
+    /// Finds how long the polynomial about a center holds; the one before held for `before` (s).
+    fn settle<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        center: &mut Center<N>,
+        before: Option<f64>,
+    ) -> Result<(), StepError> {
+        self.choose_sides(center)?;
+        let mut full = self.pace.longest(&self.series).min(LONGEST);
+        if self.series.leaves_zero() {
+            full *= FROM_ZERO;
+        }
+        center.full = full * center.unit;
+        self.end_at_corner(center)?;
+        let grown = self.doubted() && before.is_none_or(|before| center.full > 2.0 * before);
+        if grown || self.of.recurrences.is_sudden() {
+            while self.misses_something(system, center, POINTS[usize::from(grown && self.smoothness.driven)]) {
+                center.full *= 0.5;
+                center.corner = None;
+                if center.full <= f64::EPSILON * f64::EPSILON * center.unit {
+                    return Err(StepError::Tolerance { tries: 1, step: center.full });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the equations at some points are others than the polynomial says.
+    fn misses_something<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        center: &Center<N>,
+        points: u32,
+    ) -> bool {
+        (0..points).any(|k| {
+            let s = (f64::from(k) + 0.5) / f64::from(points) * (center.end() - center.t);
+            let t = center.t + s;
+            self.rates_at(center, s);
+            let mut place = center.clone();
+            let Ok(()) = self.advance(&mut place, t) else { return true };
+            let Ok(slope) = system.reduced_slope(t, place.state.q(), &place.xi[0]) else { return true };
+            let n = self.of.coordinates;
+            let rates = slope.velocity[..n].iter().chain(&slope.acceleration).take(self.rates.len());
+            rates.enumerate().any(|(j, rate)| self.refutes(j, self.rates[j], *rate, center.full))
+        })
+    }
+
+    /// The sides of corners at which the motion begins: those to which it goes. Of a number that stays zero there is no side.
+    fn choose_sides<const N: usize>(&mut self, center: &mut Center<N>) -> Result<(), StepError> {
+        for corner in 0..center.sides.len() {
+            let value = self.series.argument(corner).next().unwrap_or(0.0);
+            if center.sides[corner] != 0.0 {
+                continue;
+            }
+            let sides = std::sync::Arc::clone(&center.sides);
+            let with = |side: f64| sides.iter().enumerate().map(move |(k, s)| if k == corner { side } else { *s });
+            if value != 0.0 {
+                center.sides = with(value.signum()).collect();
+                continue;
+            }
+            let candidates: [std::sync::Arc<[f64]>; 3] = [1.0, -1.0, 0.0].map(|side| with(side).collect());
+            for sides in candidates {
+                let side = sides[corner];
+                center.sides = sides;
+                self.expand(center)?;
+                let sign = if center.forward { 1.0 } else { -1.0 };
+                let mut higher = (0..).zip(self.series.argument(corner)).skip(1).filter(|(_, c)| *c != 0.0);
+                let goes = higher.next().map_or(0.0, |(k, c)| c.signum() * if k % 2 == 1 { sign } else { 1.0 });
+                if goes * side > 0.0 || (goes == 0.0 && side == 0.0) {
+                    break;
+                }
+                if side == 0.0 {
+                    // Driven back from both sides.
+                    return Err(StepError::Tolerance { tries: 1, step: 0.0 });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the polynomial at the first corner on its way.
+    fn end_at_corner<const N: usize>(&self, center: &mut Center<N>) -> Result<(), StepError> {
+        for corner in 0..center.sides.len() {
+            let (length, side) = (center.full / center.unit, center.sides[corner]);
+            let step = if center.forward { length } else { -length };
+            let mut power = 1.0;
+            let scaled = self.series.argument(corner).map(|c| {
+                let term = side * c * power;
+                power *= step;
+                term
+            });
+            let mut terms: Vec<f64> = scaled.collect();
+            // A corner at which the polynomial begins is no corner on its way.
+            if center.turned == Some(corner) || terms.first() == Some(&0.0) {
+                terms.remove(0);
+                if terms.first().is_some_and(|slope| *slope < 0.0) {
+                    return Err(StepError::Tolerance { tries: 1, step: 0.0 });
+                }
+            }
+            if let Some(part) = first_negative(&terms) {
+                center.full *= part;
+                center.corner = Some(corner);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The largest power of two that is not above a positive number.
+fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = f64::INFINITY.to_bits();
+    larger(f64::from_bits(x.to_bits() & EXPONENT), f64::MIN_POSITIVE)
+}
