@@ -1,6 +1,6 @@
 use crate::tapes::TapePoint;
 use crate::{TextError, TextFunctions, TextModel, Words};
-use dla::ParametrisedMechanics;
+use dla::{ParametrisedMechanics, ReducedSeries};
 use expression::formulas::{Formulas, Parameters};
 use lagrangian::{AdmissibleBasis, Along, Constraint, Dual, Gradients, Scalar, Seeded};
 use std::array::from_fn;
@@ -74,6 +74,11 @@ pub struct FamilySystem<const N: usize, const M: usize>(TextFunctions<N, M>);
 impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, FREE> for FamilySystem<N, M> {
     fn at(&self, basis: u64, p: &[Seeded; FREE]) -> Box<dyn Gradients<N, M> + '_> {
         Box::new(SeededText { functions: self.0.rebased(basis), p: p.to_vec() })
+    }
+
+    fn series(&self, basis: u64) -> Result<ReducedSeries, &'static str> {
+        let series = self.0.rebased(basis).series()?;
+        Ok(ReducedSeries { constants: (series.constants.0, Arc::new([0.0; FREE])), ..series })
     }
 }
 

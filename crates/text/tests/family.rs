@@ -1,8 +1,8 @@
 //! Systems as functions of their parameters: starts and steps against extrapolated differences.
 
-use dla::{Dla, OneStep, ParametrisedMechanics, Sensitivity, State, Tangent, Variation};
+use dla::{AnyTangent, Dla, Method, OneStep, ParametrisedMechanics, Sensitivity, State, Tangent, Variation};
 use std::sync::Arc;
-use text::{FREE, Family, TextModel, TextStart, TextSystem, Unit, Varied, Words};
+use text::{FREE, Family, TextMechanics, TextModel, TextStart, TextSystem, Unit, Varied, Words};
 
 const PLACES: [&str; 4] = ["x", "y", "z", "th"];
 
@@ -123,5 +123,46 @@ fn a_step_has_derivatives_in_parameters() {
         let Variation { q, v } = derivative.apply(&Tangent { state: begin, parameters }).state;
         let off = worst(&[q, v].concat(), &extrapolated(&moved));
         assert!(off < 1e-9, "parameter {place}: {off:e}");
+    }
+}
+
+/// The derivatives of one long step by series are those of many short ones by a composition; of every direction, and of the parameters.
+#[test]
+fn series_have_the_same_derivatives() {
+    let given = [[Some(0.3), Some(0.5), None, Some(0.7)], [Some(0.8), None, None, Some(0.4)]];
+    let start = started(MASS, SHIFT, given);
+    let names = ["c".to_owned(), "m".to_owned()];
+    let family = Family::new(&words(MASS, SHIFT), &model(MASS, SHIFT), &names).unwrap();
+    let system = TextMechanics::of_family(&family, &start).unwrap();
+    let member = system.member().unwrap();
+    let mechanism = member.mechanism();
+    let begin: Vec<AnyTangent> = [Varied::Coordinate(0), Varied::Coordinate(1), Varied::Rate(0), Varied::Rate(3)]
+        .into_iter()
+        .map(|varied| (varied, [0.0, 0.0]))
+        .chain([(Varied::Parameter(0), [1.0, 0.0]), (Varied::Parameter(1), [0.0, 1.0])])
+        .map(|(varied, parameters)| {
+            let (q, v) = family.start_along(&start, varied);
+            AnyTangent { q, v, parameters: parameters.to_vec() }
+        })
+        .collect();
+    let carried = |method: &str, steps: u64| {
+        let method = Method::of(method, None, Some(1e-15)).unwrap();
+        let (mut integrator, mut tangents) = (mechanism.integrator(&method), begin.clone());
+        let (mut state, h) = (mechanism.state(&start.q, &start.v), 2.0 / steps as f64);
+        for k in 0..steps {
+            let (before, t) = (state.clone(), k as f64 * h);
+            let report = integrator.step(t, h, &mut state).unwrap().clone();
+            tangents = member.carried(&method, 0, (t, h), [&before, &state], &report, &tangents).unwrap();
+        }
+        tangents
+    };
+    let fine = carried("dla8", 100);
+    for steps in [1, 4] {
+        for (found, expected) in carried("taylor", steps).iter().zip(&fine) {
+            for (found, expected) in [(&found.q, &expected.q), (&found.v, &expected.v)] {
+                let off = worst(&found[..4], &expected[..4]);
+                assert!(off < 1e-10, "{steps} steps: {off:e}: {found:?} instead of {expected:?}");
+            }
+        }
     }
 }

@@ -16,6 +16,15 @@ pub struct ReducedSeries {
     pub constants: (usize, Arc<[f64]>),
 }
 
+impl ReducedSeries {
+    /// The same with other values of the constants, as many as it has.
+    pub(crate) fn with_constants(self, values: &[f64]) -> Self {
+        let (first, old) = self.constants;
+        let values = old.iter().zip(values).map(|(_, x)| *x).collect();
+        Self { constants: (first, values), ..self }
+    }
+}
+
 /// Maximum number of terms and factors of all formulas.
 const LARGEST: usize = 320_000;
 const TOO_LARGE: &str = "the reduced equations, from which series are made, are too large";

@@ -222,10 +222,10 @@ pub const METHODS: &[MethodInfo] = &[
         MethodKind::Taylor,
         ("taylor", 20),
         CONSTRAINT,
-        "Taylor series in the axes of a sleigh that is free, in a round well or pushed constantly, in steps of its own",
+        "Taylor series of the reduced equations, in steps and to an order of its own; a sleigh that is free, in a round well or pushed \
+        constantly has a series of its own, of order 20",
         "Jorba and Zou 2005, Experimental Mathematics 14, 99-117",
-    )
-    .without_tangent(OWN_STEPS),
+    ),
     row(
         MethodKind::Energy(1),
         ("energy2", 2),

@@ -7,10 +7,11 @@ use crate::method::differentiable;
 use crate::power::work_between;
 use crate::reduced_flow::reduced_flow;
 use crate::suspect::suspect_along;
+use crate::taylor::tangent::step_derivative;
 use crate::{
     Checkpoint, CheckpointError, Differentiable, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method,
-    OneStep, PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State,
-    StepError, StepReport, has_tangents, onto_constraint, reduced_field,
+    MethodKind, OneStep, PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity,
+    SensitivityError, State, StepError, StepReport, has_tangents, onto_constraint, reduced_field,
 };
 use lagrangian::linear::{Singular, larger, largest};
 use lagrangian::{Gradients, MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
@@ -99,6 +100,9 @@ fn reduced_derivative<const N: usize, const M: usize>(
     const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
         reason: "exponents need a basis of the admissible velocities, and the system has no basis",
     };
+    if method.info().kind == MethodKind::Taylor {
+        return step_derivative(system, method.tolerance(), time, [start, end]);
+    }
     let rule = differentiable(method)?;
     let derivative = Sensitivity::<N, M, 0>::of(system).between(&*rule, time, start, end, report)?;
     let rows = derivative.reduced.ok_or(NO_BASIS)?.matrix();
@@ -327,7 +331,7 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
     fn has_tangents(&self, method: &Method) -> Result<(), SensitivityError> {
         has_tangents(method)?;
         let (shaped, _) = self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
-        (shaped.differentiable)(method).map(drop)
+        if method.info().kind == MethodKind::Taylor { Ok(()) } else { (shaped.differentiable)(method).map(drop) }
     }
 
     fn step_derivative(

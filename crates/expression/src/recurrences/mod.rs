@@ -145,6 +145,12 @@ impl Recurrences {
         self.sudden
     }
 
+    /// Whether a function jumps at a corner, as `sign` does.
+    #[must_use]
+    pub fn jumps(&self, corner: usize) -> bool {
+        self.corners.get(corner).is_some_and(|corner| corner.function == Function::Sign)
+    }
+
     /// How many corners there are: functions such as `abs`, smooth on each side.
     #[must_use]
     pub fn corners(&self) -> usize {

@@ -14,6 +14,7 @@ mod reference;
 mod refusal;
 mod reversal;
 mod rows;
+mod series;
 mod shapes;
 mod systems;
 mod text;

@@ -16,10 +16,10 @@ pub(super) struct Center<const N: usize> {
     pub(super) forward: bool,
     /// The sides of the corners.
     pub(super) sides: Arc<[f64]>,
-    /// The corner at which it ends.
-    pub(super) corner: Option<usize>,
-    /// The corner at which it begins.
-    pub(super) turned: Option<usize>,
+    /// The sides after its end, if corners are there.
+    pub(super) after: Option<Arc<[f64]>>,
+    /// The sides before its beginning, if corners are there.
+    pub(super) before: Option<Arc<[f64]>>,
 }
 
 impl<const N: usize> Center<N> {
@@ -28,24 +28,33 @@ impl<const N: usize> Center<N> {
         if self.forward { self.t + self.full } else { self.t - self.full }
     }
 
+    /// The coordinates, and behind them the quasi-velocities, as many as there are unknowns.
+    pub(super) fn unknowns(&self, coordinates: usize, unknowns: usize) -> Vec<f64> {
+        let (places, velocities) = (&self.state.q()[..coordinates], &self.xi[0][..unknowns - coordinates]);
+        [places, velocities].concat()
+    }
+
     /// Everything, with the time (s) up to which it was used.
     pub(super) fn save(&self, reached: f64) -> Vec<f64> {
-        let number = |corner: Option<usize>| corner.map_or(-1.0, |k| k as f64);
-        let mut all = vec![reached, self.t, self.unit, self.full, f64::from(u8::from(self.forward))];
-        all.extend([number(self.corner), number(self.turned)]);
+        let of = |sides: &Option<Arc<[f64]>>| f64::from(u8::from(sides.is_some()));
+        let forward = f64::from(u8::from(self.forward));
+        let mut all = vec![reached, self.t, self.unit, self.full, forward, of(&self.after), of(&self.before)];
         all.extend(self.xi.as_flattened());
         all.extend(self.state.numbers());
-        all.extend(&*self.sides);
+        for sides in [Some(&self.sides), self.after.as_ref(), self.before.as_ref()].into_iter().flatten() {
+            all.extend(&**sides);
+        }
         all
     }
 
     /// What [`save`](Self::save) gave, beside a state of the same system.
     pub(super) fn load(all: &[f64], beside: &State<N>) -> Option<(Self, f64)> {
-        let (&[reached, t, unit, full, forward, ended, begun], rest) = all.split_first_chunk::<7>()?;
+        let (&[reached, t, unit, full, forward, after, before], rest) = all.split_first_chunk::<7>()?;
         let (xi, rest) = rest.split_at_checked(2 * N)?;
-        let (numbers, sides) = rest.split_at_checked(3 * N)?;
-        // A number from a file may be anything.
-        let corner = |k: f64| (0.0 <= k && k < sides.len() as f64).then_some(k as usize);
+        let (numbers, rest) = rest.split_at_checked(3 * N)?;
+        let corners = rest.len() / (1 + usize::from(after != 0.0) + usize::from(before != 0.0));
+        let mut lists = rest.chunks(corners.max(1)).map(Arc::from);
+        let mut list = |is_there: bool| is_there.then(|| lists.next().unwrap_or_default());
         let center = Self {
             t,
             state: beside.with_numbers(numbers),
@@ -53,9 +62,9 @@ impl<const N: usize> Center<N> {
             unit,
             full,
             forward: forward != 0.0,
-            sides: sides.into(),
-            corner: corner(ended),
-            turned: corner(begun),
+            sides: list(true).unwrap_or_default(),
+            after: list(after != 0.0),
+            before: list(before != 0.0),
         };
         Some((center, reached))
     }

@@ -4,6 +4,7 @@ mod center;
 mod pace;
 mod polynomial;
 mod root;
+pub(crate) mod tangent;
 
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport, stops};
 use center::Center;
@@ -68,6 +69,7 @@ impl<const N: usize> Taylor<N> {
             Some(polynomial) => polynomial,
             none => none.insert(Polynomial::of(system, self.tolerance)?),
         };
+        polynomial.within(h);
         let center = match &mut self.center {
             Some(center) if continues => center,
             other => {

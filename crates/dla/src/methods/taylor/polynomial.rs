@@ -10,11 +10,13 @@ use lagrangian::{PowerSources, Smoothness, added, from_fn, mul_add};
 /// The equations of a system, and the polynomial about a center that solves them.
 #[derive(Debug, Clone)]
 pub(super) struct Polynomial {
-    of: ReducedSeries,
+    pub(super) of: ReducedSeries,
     series: Expansion<f64>,
-    pace: Pace,
+    pub(super) pace: Pace,
     tolerance: f64,
     smoothness: Smoothness,
+    /// Length of the longest polynomial (s).
+    longest: f64,
     /// The time of the center (s), as long as the coefficients belong to it.
     about: Option<f64>,
     /// Room for the unknowns at a center, for increments and for rates.
@@ -29,8 +31,10 @@ pub(super) struct Polynomial {
 const LEAST_UNIT: f64 = 1e-290;
 /// Longest polynomial, in its own unit of time.
 const LONGEST: f64 = 1e6;
-/// Part of a polynomial that is trusted if a length begins with zero, where it has no series.
-const FROM_ZERO: f64 = 1e-7;
+/// Length of a polynomial, in its own unit of time, if a length begins with zero, where it has no series.
+const FROM_ZERO: f64 = 1e-8;
+/// Distance of corners that are one, as a part of the polynomial before them.
+const SAME_PLACE: f64 = 1e-13;
 /// Points at which the equations are asked in a polynomial much longer than the last, and in any other, if the state does not tell all that
 /// may happen on the way.
 const POINTS: [u32; 2] = [3, 9];
@@ -50,7 +54,25 @@ impl Polynomial {
         let (series, unknowns) = (Expansion::new(&of.recurrences), of.recurrences.unknowns());
         let [start, increments, rates] = [(); 3].map(|()| vec![0.0; unknowns]);
         let (pace, smoothness) = (Pace::of(tolerance), system.smoothness());
-        Ok(Self { of, series, pace, tolerance, smoothness, about: None, start, increments, rates, power: None })
+        Ok(Self {
+            of,
+            series,
+            pace,
+            tolerance,
+            smoothness,
+            longest: f64::INFINITY,
+            about: None,
+            start,
+            increments,
+            rates,
+            power: None,
+        })
+    }
+
+    /// Lets no polynomial be longer than a step of the run (s), if a function of time may do something of which nothing tells before. Steps
+    /// are then for the user to choose.
+    pub(super) fn within(&mut self, step: f64) {
+        self.longest = if self.of.recurrences.is_sudden() { step.abs() } else { f64::INFINITY };
     }
 
     /// Forgets the coefficients.
@@ -73,8 +95,8 @@ impl Polynomial {
             full: 0.0,
             forward: h > 0.0,
             sides: vec![0.0; self.of.recurrences.corners()].into(),
-            corner: None,
-            turned: None,
+            after: None,
+            before: None,
         };
         self.expand(&mut center)?;
         self.settle(system, &mut center, None)?;
@@ -95,13 +117,11 @@ impl Polynomial {
         }
         self.advance(center, t)?;
         (center.t, center.unit) = (t, power_of_two(full));
-        let corner = center.corner.take();
-        center.turned = corner;
-        if let Some(corner) = corner {
-            center.sides = center.sides.iter().enumerate().map(|(k, s)| if k == corner { -s } else { *s }).collect();
-        }
+        let turned = center.after.take();
+        let at_corner = turned.is_some();
+        center.before = turned.map(|sides| std::mem::replace(&mut center.sides, sides));
         self.expand(center)?;
-        if let Some(mut before) = before.filter(|_| corner.is_none() && self.refuted(center.unit, full)) {
+        if let Some(mut before) = before.filter(|_| !at_corner && self.refuted(center.unit, full)) {
             before.full *= 0.25;
             *center = before;
             self.expand(center)?;
@@ -253,15 +273,15 @@ impl Polynomial {
         self.choose_sides(center)?;
         let mut full = self.pace.longest(&self.series).min(LONGEST);
         if self.series.leaves_zero() {
-            full *= FROM_ZERO;
+            full = full.min(FROM_ZERO);
         }
-        center.full = full * center.unit;
+        center.full = (full * center.unit).min(self.longest);
         self.end_at_corner(center)?;
         let grown = self.doubted() && before.is_none_or(|before| center.full > 2.0 * before);
         if grown || self.of.recurrences.is_sudden() {
             while self.misses_something(system, center, POINTS[usize::from(grown && self.smoothness.driven)]) {
                 center.full *= 0.5;
-                center.corner = None;
+                center.after = None;
                 if center.full <= f64::EPSILON * f64::EPSILON * center.unit {
                     return Err(StepError::Tolerance { tries: 1, step: center.full });
                 }
@@ -323,11 +343,12 @@ impl Polynomial {
         Ok(())
     }
 
-    /// Ends the polynomial at the first corner on its way.
+    /// Ends the polynomial at the first corners on its way.
     fn end_at_corner<const N: usize>(&self, center: &mut Center<N>) -> Result<(), StepError> {
-        for corner in 0..center.sides.len() {
-            let (length, side) = (center.full / center.unit, center.sides[corner]);
-            let step = if center.forward { length } else { -length };
+        let length = center.full / center.unit;
+        let step = if center.forward { length } else { -length };
+        let mut parts = Vec::new();
+        for (corner, &side) in center.sides.iter().enumerate() {
             let mut power = 1.0;
             let scaled = self.series.argument(corner).map(|c| {
                 let term = side * c * power;
@@ -336,17 +357,22 @@ impl Polynomial {
             });
             let mut terms: Vec<f64> = scaled.collect();
             // A corner at which the polynomial begins is no corner on its way.
-            if center.turned == Some(corner) || terms.first() == Some(&0.0) {
+            let turned = center.before.as_ref().is_some_and(|before| before[corner] * side < 0.0);
+            if turned || terms.first() == Some(&0.0) {
                 terms.remove(0);
                 if terms.first().is_some_and(|slope| *slope < 0.0) {
                     return Err(StepError::Tolerance { tries: 1, step: 0.0 });
                 }
             }
-            if let Some(part) = first_negative(&terms) {
-                center.full *= part;
-                center.corner = Some(corner);
-            }
+            parts.push(first_negative(&terms));
         }
+        let Some(first) = parts.iter().flatten().copied().reduce(f64::min) else { return Ok(()) };
+        center.full *= first;
+        // Several may be at one place.
+        let near = SAME_PLACE * first + 4.0 * f64::EPSILON * center.end().abs() / (length * center.unit);
+        let here = |part: &Option<f64>| part.is_some_and(|part| part <= first + near);
+        let after = center.sides.iter().zip(&parts).map(|(side, part)| if here(part) { -side } else { *side });
+        center.after = Some(after.collect());
         Ok(())
     }
 }
