@@ -145,7 +145,7 @@ impl<const N: usize, const M: usize, const P: usize> Member<'_, N, M, P> {
         let mut all = Err("there is no basis of this number");
         let series = self.family.series(basis);
         let mut run = |system: &dyn Mechanics<N, M>| {
-            all = Ok(self.carried_by(system, &series, tolerance, (t, h), [start, end], tangents))
+            all = Ok(self.carried_by(system, &series, tolerance, (t, h), [start, end], tangents));
         };
         if !self.subject.system().near(t, start.q(), basis, &mut |_, near| run(near)) {
             run(self.subject.system());
