@@ -19,11 +19,12 @@ METHODS = (
     "gauss8",
     "gauss16",
     "gauss-adaptive",
+    "taylor",
     "energy4",
     "rk4-reduced",
     "dop853",
 )
-OWN_STEPS = ("gauss-adaptive", "dop853")
+OWN_STEPS = ("gauss-adaptive", "taylor", "dop853")
 STEP, DURATION = 0.05, 3.0
 
 

@@ -1,5 +1,6 @@
 """A system of text as the peers integrate it: its reduced equations, as `noslip equations` prints them."""
 
+import ast
 import json
 import os
 import shutil
@@ -18,6 +19,20 @@ FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh
 ROOT = Path(__file__).resolve().parents[3]
 
 
+class Products(ast.NodeTransformer):
+    """Small whole powers as products: the series of a power divides by its base, which may begin with zero."""
+
+    def visit_BinOp(self, node):
+        self.generic_visit(node)
+        power = node.right.value if isinstance(node.op, ast.Pow) and isinstance(node.right, ast.Constant) else None
+        if power not in (2, 3, 4):
+            return node
+        product = node.left
+        for _ in range(power - 1):
+            product = ast.BinOp(product, ast.Mult(), node.left)
+        return product
+
+
 @dataclass(frozen=True)
 class TextProblem:
     """Unknowns are the coordinates, and behind them the quasi-velocities; formulas are in the words of a scene."""
@@ -32,7 +47,7 @@ class TextProblem:
 
     def slope(self, functions):
         """The function `slope(t, ..unknowns)` on the numbers whose functions are given."""
-        python = lambda formula: formula.replace("^", "**")
+        python = lambda formula: ast.unparse(Products().visit(ast.parse(formula.replace("^", "**"), mode="eval")))
         names = ", ".join(f"v{k}" for k in range(len(self.unknowns)))
         # A coordinate may have any name, that of a function or a word of Python too.
         lines = [f"    {name} = {python(meaning)}" for name, meaning in self.renamed(self.statements)]

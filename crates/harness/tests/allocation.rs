@@ -15,12 +15,15 @@ fn check_steps(steps: u64) {
     let sleigh = sleigh();
     let schedule = Schedule { t0: 0.0, step: 0.05, steps };
     let system = Subject::from(&sleigh);
-    for info in METHODS.iter().filter(|info| info.kind != MethodKind::Taylor) {
+    for info in METHODS {
         // Made once for a run, on the heap.
         let mut integrator = system.integrator(&Method::named(info.name, None).unwrap());
         let mut state = AnyState::from(state_of(&sleigh, &backward()));
+        // Its equations are derived in the first step.
+        let first = u64::from(info.kind == MethodKind::Taylor);
+        make_steps(&system, &mut *integrator, &schedule, 0..first, &mut state, &mut ()).unwrap();
         let counts = measure(|| {
-            make_steps(&system, &mut *integrator, &schedule, 0..steps, &mut state, &mut ()).unwrap();
+            make_steps(&system, &mut *integrator, &schedule, first..steps, &mut state, &mut ()).unwrap();
         });
         assert_eq!(counts.count_total, 0, "{} allocates", info.name);
     }

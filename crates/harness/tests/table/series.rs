@@ -4,7 +4,7 @@ use crate::table::case::Point;
 use crate::table::rows::named;
 use crate::table::text::{end, system};
 use approx::assert_abs_diff_eq;
-use dla::{RunError, Schedule, StepError};
+use dla::{Event, RunError, Schedule, StepError, Watch, make_steps};
 use harness::Method;
 use text::{Unit, Words};
 
@@ -109,4 +109,41 @@ fn nodes_cut_no_step() {
             assert!(end.distance(&ends[0]) < 1e-13, "{tolerance:e}: {:e}", end.distance(&ends[0]));
         }
     }
+}
+
+/// Two hundred crossings within one step of the run: several in an own step, and pairs beside a tangent.
+#[test]
+fn crossings_are_found_on_the_polynomials() {
+    let levels: Vec<f64> = (0..10).map(|k| if k == 9 { 1.0 - 1e-9 } else { 0.11 * f64::from(k) - 0.3 }).collect();
+    let events: Vec<Event<'_>> =
+        levels.iter().map(|level| Event::new("level", move |_, q: &[f64], _: &[f64]| q[0] - level)).collect();
+    let start = Point { q: vec![0.0, 1.0], v: vec![1.0, 0.0] };
+    let system = system(&particle(["-x", "0"]), &start);
+    let (mechanism, method) = (system.mechanism(), taylor(1e-16));
+    let mut watch = Watch::new(&method, &events, ());
+    let (mut integrator, n) = (mechanism.integrator(&method), mechanism.size().n);
+    let row = |x: &[f64]| (0..n).map(|i| x.get(i).copied().unwrap_or(0.0)).collect::<Vec<f64>>();
+    let mut state = mechanism.state(&row(&start.q), &row(&start.v));
+    // Ten turns, from where none of the levels is.
+    let schedule = Schedule { t0: 0.0, step: 10.0 * std::f64::consts::TAU, steps: 1 };
+    make_steps(&*mechanism, &mut *integrator, &schedule, 0..1, &mut state, &mut watch).unwrap();
+    let mut expected: Vec<(f64, usize)> = Vec::new();
+    for (event, level) in levels.iter().enumerate() {
+        for turn in -1..=10 {
+            let begin = f64::from(turn) * std::f64::consts::TAU;
+            expected.extend([level.asin(), std::f64::consts::PI - level.asin()].map(|t| (begin + t, event)));
+        }
+    }
+    expected.retain(|(t, _)| (0.0..schedule.step).contains(t));
+    expected.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let found = watch.crossings();
+    assert_eq!((found.len(), expected.len()), (200, 200));
+    for (found, (t, event)) in found.iter().zip(&expected) {
+        // The time of a tangent is known to the root of rounding over the slope: 4.5e-5 there.
+        let slope = (1.0 - levels[*event] * levels[*event]).sqrt();
+        assert_eq!(found.event, *event);
+        assert_abs_diff_eq!(found.t, *t, epsilon = f64::max(1e-12, 2e-14 / slope));
+    }
+    // Of each pair beside a tangent it is told that there may be more.
+    assert_eq!(watch.close().map(|close| (close.count, close.incomplete)), Some((10, 0)));
 }
