@@ -462,6 +462,29 @@ fn a_tolerance_is_that_of_own_steps() {
     }
 }
 
+/// Series of what only Rust knows: a thrust that is a formula of time, one from a table with jumps, and friction that is smoothed.
+#[test]
+fn series_of_every_effect() {
+    let folder = Folder::new();
+    let scenes = [
+        "[[effects]]\nkind = \"thrust\"\nforce = \"0.2*t*exp(-t) + max(0, sin(3*t))\"\n",
+        "[[effects]]\nkind = \"thrust\"\nforce = { times = [0.0, 1.0, 2.5], values = [0.1, -0.2, 0.3] }\n",
+        "[[effects]]\nkind = \"quadratic_drag\"\nalong = 0.3\n[[effects]]\nkind = \"friction\"\nalong = 0.1\nturning = 0.02\n\
+         [[effects]]\nkind = \"hills\"\nhills = [{ x = 1.0, y = 0.2, height = 0.1, width = 0.5 }]\n",
+    ];
+    for (k, effects) in scenes.iter().enumerate() {
+        let file = format!("effects-{k}.toml");
+        folder.write(&file, &format!("{CIRCLE}{effects}"));
+        let end = |method: &str| {
+            let run = folder.json(&format!("run {file} --method {method} --step 0.02 --duration 4 --json"));
+            ["x", "y", "heading"].map(|key| run["final"][key].as_f64().unwrap())
+        };
+        let [series, stages] = ["taylor --tolerance 1e-14", "gauss16"].map(end);
+        let off = (0..3).map(|i| (series[i] - stages[i]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-11, "{effects}: {series:?} and {stages:?}");
+    }
+}
+
 /// A step is where the nodes lie, whose own steps are as the tolerance says; of all other methods both would choose the step.
 #[test]
 fn a_step_goes_with_the_tolerance_of_own_steps() {

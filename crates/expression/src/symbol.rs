@@ -159,8 +159,10 @@ impl Scalar for Symbol {
     fn recip(self) -> Self {
         Self::constant(1.0) / self
     }
-    fn apply<F: ScalarFunction>(self, _f: F) -> Self {
-        Self::untraced("a function that is told by its value and its derivatives is no formula")
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
+        f.expressed(self).unwrap_or_else(|| {
+            Self::untraced("series need formulas, and a function that is told by its value and its derivatives is none")
+        })
     }
     /// Where one is chosen by the sign of a number that is known, that one; else there is no formula.
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
@@ -174,7 +176,9 @@ impl Scalar for Symbol {
                 }
             }
             None if then == otherwise => then,
-            None => Self::untraced("a choice between two formulas by a sign is no formula"),
+            None => Self::untraced(
+                "series need formulas, and a choice between two by a sign is none: take `min`, `max` or `abs`",
+            ),
         }
     }
     fn length<const K: usize>(components: &[Self; K]) -> Self {

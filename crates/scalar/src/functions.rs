@@ -30,6 +30,11 @@ pub trait ScalarFunction: Copy {
     /// Whether it has all derivatives wherever it has a value.
     const SMOOTH: bool = true;
 
+    /// The function as operations on any number, if it is known so: then it is a formula too. `None` by default.
+    fn expressed<S: Scalar>(self, _x: S) -> Option<S> {
+        None
+    }
+
     /// The value at `x`.
     fn value(self, x: f64) -> f64;
     /// The derivative at `x`, where the function is `f`.

@@ -91,12 +91,18 @@ impl Formula {
         self.corners(-FAR, FAR).is_none_or(|corners| !corners.is_empty())
     }
 
+    /// The tapes that hold, and the sides of their corners.
+    fn in_use(&self) -> (&FormulaTapes, &[f64]) {
+        match (&self.pieces, &self.sides) {
+            (Some(pieces), Some(sides)) => (&pieces.tapes, sides),
+            _ => (&self.whole, &[]),
+        }
+    }
+
     /// A derivative, by its order, at `t`.
     fn at(&self, order: usize, t: f64) -> f64 {
-        match (&self.pieces, &self.sides) {
-            (Some(pieces), Some(sides)) => pieces.tapes.at(order, t, sides),
-            _ => self.whole.at(order, t, &[]),
-        }
+        let (tapes, sides) = self.in_use();
+        tapes.at(order, t, sides)
     }
 
     /// A derivative, by its order, on any number.
@@ -193,6 +199,15 @@ impl FormulaDerivative<'_> {
 impl ScalarFunction for FormulaDerivative<'_> {
     /// It may be of any kind.
     const SMOOTH: bool = false;
+
+    fn expressed<S: Scalar>(self, t: S) -> Option<S> {
+        let (tapes, sides) = self.formula.in_use();
+        let (tape, mut value) = (tapes.0.get(self.order)?, None);
+        let side = |k: usize| S::constant(sides.get(k - 1).copied().unwrap_or(0.0));
+        let input = |k: usize| if k == 0 { t } else { side(k) };
+        tape.evaluate_with(input, &mut vec![S::zero(); tape.scratch()], |_, x| value = Some(x)).ok()?;
+        value
+    }
 
     fn value(self, t: f64) -> f64 {
         self.formula.at(self.order, t)
