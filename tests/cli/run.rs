@@ -474,7 +474,7 @@ fn series_of_every_effect() {
     ];
     for (k, effects) in scenes.iter().enumerate() {
         let file = format!("effects-{k}.toml");
-        folder.write(&file, &format!("{CIRCLE}{effects}"));
+        folder.write(&file, format!("{CIRCLE}{effects}"));
         let end = |method: &str| {
             let run = folder.json(&format!("run {file} --method {method} --step 0.02 --duration 4 --json"));
             ["x", "y", "heading"].map(|key| run["final"][key].as_f64().unwrap())

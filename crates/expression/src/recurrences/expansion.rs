@@ -1,12 +1,11 @@
-use super::{Kind, Recurrences, Run, SeriesOperation, Start, WIDE};
-use crate::Function;
+use super::{Recurrences, Run, WIDE};
 use scalar::Scalar;
 
 /// The highest order of a series.
 pub const MOST_ORDERS: usize = 32;
 
 /// The most terms of an operation.
-const MOST_TERMS: usize = 4;
+pub(super) const MOST_TERMS: usize = 4;
 
 /// `1/k`.
 const RECIPROCALS: [f64; MOST_ORDERS + 1] = {
@@ -25,21 +24,21 @@ const RECIPROCALS: [f64; MOST_ORDERS + 1] = {
 #[derive(Debug, Clone)]
 pub struct Expansion<S> {
     /// The value of each place.
-    values: Vec<S>,
+    pub(super) values: Vec<S>,
     /// The coefficient of the present order of each place, and behind them the sums over products.
     present: Vec<S>,
     /// The factors of the terms of all operations.
-    factors: Vec<S>,
+    pub(super) factors: Vec<S>,
     /// Both factors of the sums over products, by blocks, each with its orders.
     orders: Vec<[[[S; WIDE]; MOST_ORDERS]; 2]>,
     /// What is known of the sums of the next order before those of the present order are.
     begun: Vec<[S; WIDE]>,
     /// The coefficients of the unknowns, order by order, and of the arguments of corners.
     unknowns: Vec<S>,
-    arguments: Vec<S>,
+    pub(super) arguments: Vec<S>,
     order: usize,
     /// The places of lengths, and what else has no series where it vanishes, that are zero at order 0.
-    vanishing: Vec<u32>,
+    pub(super) vanishing: Vec<u32>,
     leaves: bool,
 }
 
@@ -135,107 +134,6 @@ impl<S: Scalar> Expansion<S> {
     #[must_use]
     pub fn leaves_zero(&self) -> bool {
         self.leaves
-    }
-
-    /// The values of all operations, and the factors of their terms.
-    fn evaluate(&mut self, of: &Recurrences, sides: &[S]) {
-        let (mut at, one) = (0, S::constant(1.0));
-        // Sine and cosine of one argument are computed together.
-        let mut circle: Option<(u32, (S, S))> = None;
-        for &SeriesOperation { to, terms, kind } in &of.operations {
-            let value = |place: u32| self.values[place as usize];
-            let inverse =
-                |by: S, flat: bool| if flat { (by * by).where_positive(by.recip(), S::zero()) } else { by.recip() };
-            let mut vanishes = |place: u32, inverse: S| {
-                if inverse.is_zero() {
-                    self.vanishing.push(place);
-                }
-            };
-            let (x, factors): (S, [S; MOST_TERMS]) = match kind {
-                Kind::Scaled { a, alpha, gamma } => (value(a) * alpha + gamma, [S::constant(alpha), one, one, one]),
-                Kind::Sum { a, b, beta } => (value(a) + value(b) * beta, [one, S::constant(beta), one, one]),
-                Kind::Product { a, b } => (value(a) * value(b), [value(b), value(a), one, one]),
-                Kind::SumOfProduct { a, b, c, beta } => {
-                    let (a, b) = (value(a) * beta, value(b));
-                    (value(c) + a * b, [b * beta, a, one, S::constant(beta)])
-                }
-                Kind::Square { a } => (value(a).squared(), [value(a) * 2.0, one, one, one]),
-                Kind::Inverse { b, flat } => {
-                    let x = inverse(value(b), flat);
-                    if flat {
-                        vanishes(b, x);
-                    }
-                    (x, [-x.squared(), -x, one, one])
-                }
-                Kind::Quotient { a, b, flat } => {
-                    let by = inverse(value(b), flat);
-                    let x = if flat { value(a) * by } else { value(a) / value(b) };
-                    if flat {
-                        vanishes(b, by);
-                    }
-                    (x, [by, -(x * by), -by, one])
-                }
-                Kind::Root { a, flat } => {
-                    let x = value(a).sqrt();
-                    let by = inverse(x * 2.0, flat);
-                    if flat {
-                        vanishes(a, by);
-                    }
-                    (x, [by, -by, one, one])
-                }
-                Kind::Integral { a, b, beta, start } => {
-                    let x = match start {
-                        Start::Zero => S::zero(),
-                        Start::Call(function @ (Function::Sin | Function::Cos), _) => {
-                            let known = circle.filter(|(place, _)| *place == a);
-                            let (place, both) = known.unwrap_or_else(|| (a, value(a).sin_cos()));
-                            circle = Some((place, both));
-                            if function == Function::Sin { both.0 } else { both.1 }
-                        }
-                        Start::Call(function, second) => function.of(value(a), value(second)),
-                        Start::Real(p) => value(a).powf(p),
-                        Start::Whole(n) => value(a).powi(n),
-                    };
-                    // The value of the slope may follow.
-                    (x, [value(b), S::constant(beta), one, one])
-                }
-                Kind::Choice { a, b, corner } => {
-                    let super::Corner { argument, function } = of.corners[corner as usize];
-                    let given = sides.get(corner as usize).copied().unwrap_or(S::zero());
-                    let side = given.squared().where_positive(given, value(argument).sign());
-                    match function {
-                        Function::Abs => (side * value(a), [side, S::zero(), one, one]),
-                        Function::Sign => (side, [S::zero(), S::zero(), one, one]),
-                        function => {
-                            // Of equal numbers the mean.
-                            let of_a = if function == Function::Max { side } else { -side };
-                            let of_a = (of_a + 1.0) * 0.5;
-                            let x = of_a.where_positive(
-                                (-of_a + 1.0).where_positive((value(a) + value(b)) * 0.5, value(a)),
-                                value(b),
-                            );
-                            (x, [of_a, -of_a + 1.0, one, one])
-                        }
-                    }
-                }
-            };
-            self.values[to as usize] = x;
-            // Those of the next operation overwrite what is too much.
-            if let Some(row) = self.factors[at..].first_chunk_mut::<MOST_TERMS>() {
-                *row = factors;
-            }
-            at += terms as usize;
-        }
-        let mut at = 0;
-        for &SeriesOperation { kind, terms, .. } in &of.operations {
-            if let Kind::Integral { b, beta, .. } = kind {
-                self.factors[at] = self.values[b as usize] * beta;
-            }
-            at += terms as usize;
-        }
-        for (argument, corner) in self.arguments.iter_mut().zip(&of.corners) {
-            *argument = self.values[corner.argument as usize];
-        }
     }
 
     /// The sums over products of order `k`: what [`begin_sums`](Self::begin_sums) has begun, with the coefficients of order `k - 1`.

@@ -3,6 +3,7 @@
 mod expansion;
 mod lowered;
 mod schedule;
+mod values;
 
 pub use expansion::{Expansion, MOST_ORDERS};
 

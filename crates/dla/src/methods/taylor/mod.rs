@@ -1,6 +1,7 @@
 //! Taylor series of the reduced equations.
 
 mod center;
+mod extent;
 mod pace;
 mod polynomial;
 mod root;

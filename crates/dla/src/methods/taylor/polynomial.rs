@@ -1,6 +1,5 @@
 use super::center::Center;
 use super::pace::Pace;
-use super::root::first_negative;
 use crate::{MeanPower, Mechanics, ReducedSeries, State, StepError, power};
 use expression::Expansion;
 use lagrangian::linear::larger;
@@ -11,40 +10,28 @@ use lagrangian::{PowerSources, Smoothness, added, from_fn, mul_add};
 #[derive(Debug, Clone)]
 pub(super) struct Polynomial {
     pub(super) of: ReducedSeries,
-    series: Expansion<f64>,
+    pub(super) series: Expansion<f64>,
     pub(super) pace: Pace,
-    tolerance: f64,
-    smoothness: Smoothness,
+    pub(super) tolerance: f64,
+    pub(super) smoothness: Smoothness,
     /// Length of the longest polynomial (s).
-    longest: f64,
+    pub(super) longest: f64,
     /// The time of the center (s), as long as the coefficients belong to it.
     about: Option<f64>,
     /// Room for the unknowns at a center, for increments and for rates.
-    start: Vec<f64>,
+    pub(super) start: Vec<f64>,
     increments: Vec<f64>,
-    rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
     /// The Legendre series of the power along the polynomial, once it was asked for.
     power: Option<[f64; NODES]>,
 }
 
+/// Smallest unit of time at a node (s).
+const SHORTEST: f64 = 1e-100;
 /// Smallest unit of time (s).
 const LEAST_UNIT: f64 = 1e-290;
-/// Longest polynomial, in its own unit of time.
-const LONGEST: f64 = 1e6;
-/// Length of a polynomial, in its own unit of time, if a length begins with zero, where it has no series.
-const FROM_ZERO: f64 = 1e-8;
-/// Distance of corners that are one, as a part of the polynomial before them.
-const SAME_PLACE: f64 = 1e-13;
-/// Points at which the equations are asked in a polynomial much longer than the last, and in any other, if the state does not tell all that
-/// may happen on the way.
-const POINTS: [u32; 2] = [3, 9];
 /// Number of places at which the power is evaluated along a polynomial.
 const NODES: usize = 16;
-/// Largest defect of the equations along a polynomial, in tolerances; the part of it that is rounding, and of the change of an unknown.
-const DEFECT: f64 = 1e3;
-const ROUNDING: f64 = 1e-13;
-const ROUNDING_OF_CHANGE: f64 = 1e-11;
-
 impl Polynomial {
     pub(super) fn of<const N: usize, const M: usize>(
         system: &dyn Mechanics<N, M>,
@@ -91,7 +78,7 @@ impl Polynomial {
             t,
             state: *state,
             xi: [state.quasi_velocities(system, t)?, [0.0; N]],
-            unit: power_of_two(h.abs().min(1.0)),
+            unit: power_of_two(h.abs().clamp(SHORTEST, 1.0)),
             full: 0.0,
             forward: h > 0.0,
             sides: vec![0.0; self.of.recurrences.corners()].into(),
@@ -129,11 +116,6 @@ impl Polynomial {
         }
         self.settle(system, center, Some(full))?;
         Ok(true)
-    }
-
-    /// Whether coefficients may be too small to tell of what is ahead: those of polynomials, sines and cosines are not.
-    fn doubted(&self) -> bool {
-        self.smoothness.driven || self.smoothness.narrow
     }
 
     /// The state on the polynomial at a time (s).
@@ -192,7 +174,7 @@ impl Polynomial {
     }
 
     /// Moves place and quasi-velocities along the polynomial about a center, to a time (s).
-    fn advance<const N: usize>(&mut self, center: &mut Center<N>, t: f64) -> Result<(), StepError> {
+    pub(super) fn advance<const N: usize>(&mut self, center: &mut Center<N>, t: f64) -> Result<(), StepError> {
         let s = (t - center.t) / center.unit;
         self.increments.fill(0.0);
         for k in (1..=self.series.order()).rev() {
@@ -213,7 +195,7 @@ impl Polynomial {
     }
 
     /// The rates of the unknowns on the polynomial, at a time since its center (s).
-    fn rates_at<const N: usize>(&mut self, center: &Center<N>, s: f64) {
+    pub(super) fn rates_at<const N: usize>(&mut self, center: &Center<N>, s: f64) {
         let s = s / center.unit;
         self.rates.resize(self.start.len(), 0.0);
         self.rates.fill(0.0);
@@ -227,22 +209,8 @@ impl Polynomial {
         }
     }
 
-    /// Whether the rates about a new center, in a unit of time, are others than a polynomial of this length (s) foretold.
-    fn refuted(&self, unit: f64, full: f64) -> bool {
-        let rates = self.series.coefficients(1);
-        (0..rates.len()).any(|j| self.refutes(j, self.rates[j], rates[j] / unit, full))
-    }
-
-    /// Whether a rate of an unknown is another than a polynomial of this length (s) foretold.
-    fn refutes(&self, unknown: usize, foretold: f64, rate: f64, full: f64) -> bool {
-        let size = 1.0 + self.start[unknown].abs();
-        let allowed = (DEFECT * self.tolerance + ROUNDING) * size + ROUNDING_OF_CHANGE * full * rate.abs();
-        let defect = (rate - foretold).abs() * full;
-        defect > allowed || defect.is_nan()
-    }
-
     /// Computes the coefficients about a center, in a smaller unit of time if they overflow.
-    fn expand<const N: usize>(&mut self, center: &mut Center<N>) -> Result<(), StepError> {
+    pub(super) fn expand<const N: usize>(&mut self, center: &mut Center<N>) -> Result<(), StepError> {
         self.power = None;
         let (places, velocities) = self.start.split_at_mut(self.of.coordinates);
         places.iter_mut().zip(center.state.q()).for_each(|(x, q)| *x = *q);
@@ -261,119 +229,6 @@ impl Polynomial {
         }
         self.about = None;
         Err(StepError::NotFinite)
-    }
-
-    /// Finds how long the polynomial about a center holds; the one before held for `before` (s).
-    fn settle<const N: usize, const M: usize>(
-        &mut self,
-        system: &dyn Mechanics<N, M>,
-        center: &mut Center<N>,
-        before: Option<f64>,
-    ) -> Result<(), StepError> {
-        self.choose_sides(center)?;
-        let mut full = self.pace.longest(&self.series).min(LONGEST);
-        if self.series.leaves_zero() {
-            full = full.min(FROM_ZERO);
-        }
-        center.full = (full * center.unit).min(self.longest);
-        self.end_at_corner(center)?;
-        let grown = self.doubted() && before.is_none_or(|before| center.full > 2.0 * before);
-        if grown || self.of.recurrences.is_sudden() {
-            while self.misses_something(system, center, POINTS[usize::from(grown && self.smoothness.driven)]) {
-                center.full *= 0.5;
-                center.after = None;
-                if center.full <= f64::EPSILON * f64::EPSILON * center.unit {
-                    return Err(StepError::Tolerance { tries: 1, step: center.full });
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether the equations at some points are others than the polynomial says.
-    fn misses_something<const N: usize, const M: usize>(
-        &mut self,
-        system: &dyn Mechanics<N, M>,
-        center: &Center<N>,
-        points: u32,
-    ) -> bool {
-        (0..points).any(|k| {
-            let s = (f64::from(k) + 0.5) / f64::from(points) * (center.end() - center.t);
-            let t = center.t + s;
-            self.rates_at(center, s);
-            let mut place = center.clone();
-            let Ok(()) = self.advance(&mut place, t) else { return true };
-            let Ok(slope) = system.reduced_slope(t, place.state.q(), &place.xi[0]) else { return true };
-            let n = self.of.coordinates;
-            let rates = slope.velocity[..n].iter().chain(&slope.acceleration).take(self.rates.len());
-            rates.enumerate().any(|(j, rate)| self.refutes(j, self.rates[j], *rate, center.full))
-        })
-    }
-
-    /// The sides of corners at which the motion begins: those to which it goes. Of a number that stays zero there is no side.
-    fn choose_sides<const N: usize>(&mut self, center: &mut Center<N>) -> Result<(), StepError> {
-        for corner in 0..center.sides.len() {
-            let value = self.series.argument(corner).next().unwrap_or(0.0);
-            if center.sides[corner] != 0.0 {
-                continue;
-            }
-            let sides = std::sync::Arc::clone(&center.sides);
-            let with = |side: f64| sides.iter().enumerate().map(move |(k, s)| if k == corner { side } else { *s });
-            if value != 0.0 {
-                center.sides = with(value.signum()).collect();
-                continue;
-            }
-            let candidates: [std::sync::Arc<[f64]>; 3] = [1.0, -1.0, 0.0].map(|side| with(side).collect());
-            for sides in candidates {
-                let side = sides[corner];
-                center.sides = sides;
-                self.expand(center)?;
-                let sign = if center.forward { 1.0 } else { -1.0 };
-                let mut higher = (0..).zip(self.series.argument(corner)).skip(1).filter(|(_, c)| *c != 0.0);
-                let goes = higher.next().map_or(0.0, |(k, c)| c.signum() * if k % 2 == 1 { sign } else { 1.0 });
-                if goes * side > 0.0 || (goes == 0.0 && side == 0.0) {
-                    break;
-                }
-                if side == 0.0 {
-                    // Driven back from both sides.
-                    return Err(StepError::Tolerance { tries: 1, step: 0.0 });
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Ends the polynomial at the first corners on its way.
-    fn end_at_corner<const N: usize>(&self, center: &mut Center<N>) -> Result<(), StepError> {
-        let length = center.full / center.unit;
-        let step = if center.forward { length } else { -length };
-        let mut parts = Vec::new();
-        for (corner, &side) in center.sides.iter().enumerate() {
-            let mut power = 1.0;
-            let scaled = self.series.argument(corner).map(|c| {
-                let term = side * c * power;
-                power *= step;
-                term
-            });
-            let mut terms: Vec<f64> = scaled.collect();
-            // A corner at which the polynomial begins is no corner on its way.
-            let turned = center.before.as_ref().is_some_and(|before| before[corner] * side < 0.0);
-            if turned || terms.first() == Some(&0.0) {
-                terms.remove(0);
-                if terms.first().is_some_and(|slope| *slope < 0.0) {
-                    return Err(StepError::Tolerance { tries: 1, step: 0.0 });
-                }
-            }
-            parts.push(first_negative(&terms));
-        }
-        let Some(first) = parts.iter().flatten().copied().reduce(f64::min) else { return Ok(()) };
-        center.full *= first;
-        // Several may be at one place.
-        let near = SAME_PLACE * first + 4.0 * f64::EPSILON * center.end().abs() / (length * center.unit);
-        let here = |part: &Option<f64>| part.is_some_and(|part| part <= first + near);
-        let after = center.sides.iter().zip(&parts).map(|(side, part)| if here(part) { -side } else { *side });
-        center.after = Some(after.collect());
-        Ok(())
     }
 }
 
