@@ -4,7 +4,7 @@ use crate::table::case::Point;
 use crate::table::rows::named;
 use crate::table::text::{end, system};
 use approx::assert_abs_diff_eq;
-use dla::{Event, RunError, Schedule, StepError, Watch, make_steps};
+use dla::{AnyState, Event, RunError, Schedule, StepError, Watch, make_steps};
 use harness::Method;
 use text::{Unit, Words};
 
@@ -146,4 +146,40 @@ fn crossings_are_found_on_the_polynomials() {
     }
     // Of each pair beside a tangent it is told that there may be more.
     assert_eq!(watch.close().map(|close| (close.count, close.incomplete)), Some((10, 0)));
+}
+
+/// A run is continued to the bit from what the method remembers; and whatever a file says that it remembers, nothing panics.
+#[test]
+fn a_memory_continues_the_polynomial() {
+    let start = Point { q: vec![0.3, -0.2], v: vec![1.0, 0.4] };
+    let system = system(&particle(["-abs(x)*x - y", "-2*sign(y) + x"]), &start);
+    let (mechanism, method) = (system.mechanism(), taylor(1e-12));
+    let n = mechanism.size().n;
+    let row = |x: &[f64]| (0..n).map(|i| x.get(i).copied().unwrap_or(0.0)).collect::<Vec<f64>>();
+    let mut integrator = mechanism.integrator(&method);
+    let mut state = mechanism.state(&row(&start.q), &row(&start.v));
+    let step = 0.05;
+    let mut resumed: Option<AnyState> = None;
+    for k in 0..20 {
+        let time = |k: i32| f64::from(k) * step;
+        integrator.step(time(k), step, &mut state).unwrap();
+        if let Some(resumed) = resumed {
+            assert_eq!((resumed.q(), resumed.v()), (state.q(), state.v()), "step {k}");
+        }
+        let memory = integrator.memory();
+        let next = |memory: &[f64]| {
+            let (mut other, mut state) = (mechanism.integrator(&method), state.clone());
+            other.recall(memory, &state);
+            other.step(time(k + 1), step, &mut state).map(|_| state)
+        };
+        resumed = Some(next(&memory).unwrap());
+        for at in 0..memory.len() {
+            let _ = next(&memory[..at]);
+            for wrong in [f64::NAN, f64::INFINITY] {
+                let mut memory = memory.clone();
+                memory[at] = wrong;
+                let _ = next(&memory);
+            }
+        }
+    }
 }

@@ -52,7 +52,11 @@ impl<const N: usize> Center<N> {
         let (&[reached, t, unit, full, forward, after, before], rest) = all.split_first_chunk::<7>()?;
         let (xi, rest) = rest.split_at_checked(2 * N)?;
         let (numbers, rest) = rest.split_at_checked(3 * N)?;
-        let corners = rest.len() / (1 + usize::from(after != 0.0) + usize::from(before != 0.0));
+        let lists = 1 + usize::from(after != 0.0) + usize::from(before != 0.0);
+        if !rest.len().is_multiple_of(lists) {
+            return None;
+        }
+        let corners = rest.len() / lists;
         let mut lists = rest.chunks(corners.max(1)).map(Arc::from);
         let mut list = |is_there: bool| is_there.then(|| lists.next().unwrap_or_default());
         let center = Self {

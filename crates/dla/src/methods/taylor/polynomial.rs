@@ -217,7 +217,7 @@ impl Polynomial {
         velocities.iter_mut().zip(&center.xi[0]).for_each(|(x, xi)| *x = *xi);
         let (first, constants) = &self.of.constants;
         let other = |k: usize| k.checked_sub(*first).and_then(|k| constants.get(k)).copied().unwrap_or(0.0);
-        while center.unit > LEAST_UNIT {
+        while (LEAST_UNIT..=f64::MAX).contains(&center.unit) {
             let at = (center.t, &self.start[..], &*center.sides);
             self.series.expand_with(&self.of.recurrences, at, center.unit, self.pace.order, other);
             let finite = |k: usize| self.series.coefficients(k).iter().all(|c| c.is_finite());
