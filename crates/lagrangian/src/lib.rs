@@ -20,6 +20,7 @@ pub use linear::{Bordered, Dependence, FactoredSaddle, Pivots, RowSpace, Rows, S
 pub use numbers::*;
 pub use quadrature::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Trapezoid};
 pub use scalar::{
-    Scalar, ScalarFunction, array, assigning_operators, called, from_fn, mapped, mul_add, sin_cos_wrapped,
+    Scalar, ScalarFunction, array, assigning_operators, called, from_fn, mapped, mul_add, power_of_two_below,
+    sin_cos_wrapped,
 };
 pub use system::*;

@@ -12,5 +12,5 @@ pub mod sincos;
 
 pub use functions::ScalarFunction;
 pub use inlined::{array, called, from_fn, mapped};
-pub use scalar::{Scalar, exponential, mul_add};
+pub use scalar::{Scalar, exponential, mul_add, power_of_two_below};
 pub use sincos::sin_cos_wrapped;

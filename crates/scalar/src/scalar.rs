@@ -333,13 +333,19 @@ fn sum_of_squares<const K: usize>(x: &[f64; K], scale: f64) -> f64 {
 #[cold]
 #[inline(never)]
 fn scaled<const K: usize>(x: &[f64; K], sum: f64) -> f64 {
-    const EXPONENT: u64 = f64::INFINITY.to_bits();
     let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if sum.is_nan() || largest == 0.0 || largest.is_infinite() {
         return sum;
     }
-    let scale = f64::from_bits(largest.to_bits() & EXPONENT).max(f64::MIN_POSITIVE);
+    let scale = power_of_two_below(largest);
     sum_of_squares(x, scale).sqrt() * scale
+}
+
+/// The largest power of two that is not above a positive number, and at least the smallest normal number.
+#[must_use]
+pub fn power_of_two_below(x: f64) -> f64 {
+    const EXPONENT: u64 = f64::INFINITY.to_bits();
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & EXPONENT)
 }
 
 /// `a b + c`: with one rounding where the build is for machines with a fused instruction, else with two. Without the instruction

@@ -12,11 +12,17 @@ pub struct ReducedSeries {
     pub recurrences: Arc<Recurrences>,
     /// How many of the unknowns are coordinates.
     pub coordinates: usize,
-    /// The first variable behind those of the unknowns, and the values from there on: they are constant.
+    /// The number of the first variable behind the unknowns, and the constant values of this variable and all that follow it.
     pub constants: (usize, Arc<[f64]>),
 }
 
 impl ReducedSeries {
+    /// The constant in a variable: its number among the constants, and its value.
+    pub(crate) fn constant(&self, variable: usize) -> Option<(usize, f64)> {
+        let k = variable.checked_sub(self.constants.0)?;
+        Some((k, *self.constants.1.get(k)?))
+    }
+
     /// The same with other values of the constants, as many as it has.
     pub(crate) fn with_constants(self, values: &[f64]) -> Self {
         let (first, old) = self.constants;

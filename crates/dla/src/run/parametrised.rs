@@ -163,6 +163,7 @@ impl<const N: usize, const M: usize, const P: usize> Member<'_, N, M, P> {
         tangents: &[AnyTangent],
     ) -> Result<Vec<AnyTangent>, SensitivityError> {
         let of = series.clone().map_err(|reason| SensitivityError::Unsupported { reason })?;
+        let motion = system.series().map_err(|reason| SensitivityError::Unsupported { reason })?;
         let (n, unknowns) = (of.coordinates, of.recurrences.unknowns());
         let column = |part: &[f64], k: usize| part.get(k).copied().unwrap_or(0.0);
         let mut flow = TaylorFlow::new(of.with_constants(&self.parameters));
@@ -177,7 +178,7 @@ impl<const N: usize, const M: usize, const P: usize> Member<'_, N, M, P> {
         };
         let velocities = DMatrix::from_fn(n, tangents.len(), |i, j| column(&tangents[j].v, i));
         flow.solve_velocities(t, &at(t, start)?, &mut begin, &velocities);
-        let (there, carried) = flow.carried(system, tolerance, (t, h), start, begin)?;
+        let (there, carried) = flow.carried((system, motion), tolerance, (t, h), start, begin)?;
         same_end(start, &there, end)?;
         let velocities = flow.velocities(t + h, &at(t + h, &there)?, &carried);
         let padded = |of: &DMatrix<f64>, j: usize| -> Vec<f64> {

@@ -9,9 +9,9 @@ use crate::reduced_flow::reduced_flow;
 use crate::suspect::suspect_along;
 use crate::taylor::tangent::step_derivative;
 use crate::{
-    Checkpoint, CheckpointError, Differentiable, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method,
-    MethodKind, OneStep, PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity,
-    SensitivityError, State, StepError, StepReport, has_tangents, onto_constraint, reduced_field,
+    Checkpoint, CheckpointError, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method, MethodKind,
+    OneStep, PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State,
+    StepError, StepReport, has_derivatives, has_tangents, onto_constraint, reduced_field,
 };
 use lagrangian::linear::{Singular, larger, largest};
 use lagrangian::{Gradients, MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
@@ -58,7 +58,6 @@ struct Shaped<const N: usize, const M: usize> {
     stepper: for<'b> fn(&Method, &'b dyn OwnMethods<N, M>, f64) -> Stepper<'b, N, M>,
     field: FieldOf<N, M>,
     flow: FlowOf<N, M>,
-    differentiable: fn(&Method) -> Result<Box<dyn Differentiable<N, M>>, SensitivityError>,
     derivative: StepDerivativeOf<N, M>,
 }
 
@@ -80,13 +79,8 @@ type StepDerivativeOf<const N: usize, const M: usize> = fn(
 ) -> Result<DMatrix<f64>, SensitivityError>;
 
 impl<const N: usize, const M: usize> Shaped<N, M> {
-    const ALL: Self = Self {
-        stepper: Method::stepper_of,
-        field: reduced_field,
-        flow: reduced_flow,
-        differentiable,
-        derivative: reduced_derivative,
-    };
+    const ALL: Self =
+        Self { stepper: Method::stepper_of, field: reduced_field, flow: reduced_flow, derivative: reduced_derivative };
 }
 
 /// The derivative of a step in the coordinates `(q, xi)`.
@@ -330,8 +324,8 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
 
     fn has_tangents(&self, method: &Method) -> Result<(), SensitivityError> {
         has_tangents(method)?;
-        let (shaped, _) = self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
-        if method.info().kind == MethodKind::Taylor { Ok(()) } else { (shaped.differentiable)(method).map(drop) }
+        self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
+        has_derivatives(method)
     }
 
     fn step_derivative(

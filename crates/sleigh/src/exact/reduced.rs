@@ -1,5 +1,5 @@
 use crate::{Sleigh, SleighError};
-use lagrangian::Twofold;
+use lagrangian::{Twofold, power_of_two_below};
 
 /// Below this phase the motion is written as its change from the start, which keeps the digits of a small change and
 /// is exact at phase zero; above it, by exponentials.
@@ -149,11 +149,6 @@ fn rate(sleigh: &Sleigh, u0: f64, omega0: f64, plain: f64) -> Twofold {
     let speed = (Twofold::product(u, u) + spin).sqrt();
     let kappa = (speed * a / square) * scale;
     if (kappa.hi - plain).abs() <= 8.0 * f64::EPSILON * plain.abs() { kappa } else { Twofold::from(plain) }
-}
-
-fn power_of_two_below(value: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    f64::from_bits(value.max(f64::MIN_POSITIVE).to_bits() & EXPONENT)
 }
 
 /// `f/x` of functions with the tangent of the identity at zero.

@@ -1,4 +1,4 @@
-use crate::State;
+use crate::{State, StepError, stops};
 use lagrangian::from_fn;
 use std::sync::Arc;
 
@@ -26,6 +26,22 @@ impl<const N: usize> Center<N> {
     /// The time at which it ends (s).
     pub(super) fn end(&self) -> f64 {
         if self.forward { self.t + self.full } else { self.t - self.full }
+    }
+
+    /// The next time to go to (s) in an interval of this length (s) and with this end, and true if that is the end of the interval; else it is
+    /// the end of the polynomial, after this number of tries.
+    ///
+    /// # Errors
+    /// [`StepError::Tolerance`] if the polynomial leads nowhere, [`StepError::Stopped`] if the caller asked for that.
+    pub(super) fn toward(&self, end: f64, h: f64, tries: u32) -> Result<(f64, bool), StepError> {
+        if (end - self.t).abs() <= self.full {
+            return Ok((end, true));
+        }
+        let to = self.end();
+        if to.to_bits() == self.t.to_bits() || self.full <= f64::EPSILON * h.abs() {
+            return Err(StepError::Tolerance { tries, step: self.full });
+        }
+        if stops() { Err(StepError::Stopped) } else { Ok((to, false)) }
     }
 
     /// The coordinates, and behind them the quasi-velocities, as many as there are unknowns.

@@ -7,7 +7,7 @@ mod polynomial;
 mod root;
 pub(crate) mod tangent;
 
-use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport, stops};
+use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use center::Center;
 use lagrangian::PowerSources;
 use polynomial::Polynomial;
@@ -48,7 +48,7 @@ impl<const N: usize> Taylor<N> {
         }
     }
 
-    /// Whether the motion from this node is that of the polynomial.
+    /// Whether the polynomial continues the motion from this node.
     fn continues(&self, t: f64, h: f64, state: &State<N>) -> bool {
         let near = |time: f64| (time - t).abs() <= 4.0 * f64::EPSILON * t.abs();
         let same = |node: &Option<(f64, State<N>)>| node.as_ref().is_some_and(|node| near(node.0) && node.1 == *state);
@@ -68,7 +68,10 @@ impl<const N: usize> Taylor<N> {
         let continues = self.continues(t0, h, state);
         let polynomial = match &mut self.polynomial {
             Some(polynomial) => polynomial,
-            none => none.insert(Polynomial::of(system, self.tolerance)?),
+            none => {
+                let series = system.series().map_err(|reason| StepError::Unsupported { reason })?;
+                none.insert(Polynomial::new(system, series, self.tolerance))
+            }
         };
         polynomial.within(h);
         let center = match &mut self.center {
@@ -81,11 +84,7 @@ impl<const N: usize> Taylor<N> {
         polynomial.refresh(center)?;
         let (end, mut from, mut work) = (t0 + h, t0, self.sources.any().then_some(0.0));
         for tries in 1..=Self::MAX_STEPS {
-            let inside = (end - center.t).abs() <= center.full;
-            let to = if inside { end } else { center.end() };
-            if !inside && (to.to_bits() == center.t.to_bits() || center.full <= f64::EPSILON * h.abs()) {
-                return Err(StepError::Tolerance { tries, step: center.full });
-            }
+            let (to, inside) = center.toward(end, h, tries)?;
             let done = work.map(|work| work + polynomial.work(system, self.sources, center, [from, to]));
             if inside {
                 *state = polynomial.at(system, center, end)?;
@@ -104,9 +103,6 @@ impl<const N: usize> Taylor<N> {
                     self.reached = Some((to, node));
                     return Ok((work, Some(to)));
                 }
-            }
-            if stops() {
-                return Err(StepError::Stopped);
             }
         }
         Err(StepError::Tolerance { tries: Self::MAX_STEPS, step: center.full })

@@ -2,9 +2,8 @@ use super::center::Center;
 use super::pace::Pace;
 use crate::{MeanPower, Mechanics, ReducedSeries, State, StepError, power};
 use expression::Expansion;
-use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_legendre, shifted_legendre};
-use lagrangian::{PowerSources, Smoothness, added, from_fn, mul_add};
+use lagrangian::{PowerSources, Smoothness, added, from_fn, mul_add, power_of_two_below};
 
 /// The equations of a system, and the polynomial about a center that solves them.
 #[derive(Debug, Clone)]
@@ -33,15 +32,15 @@ const LEAST_UNIT: f64 = 1e-290;
 /// Number of places at which the power is evaluated along a polynomial.
 const NODES: usize = 16;
 impl Polynomial {
-    pub(super) fn of<const N: usize, const M: usize>(
+    pub(super) fn new<const N: usize, const M: usize>(
         system: &dyn Mechanics<N, M>,
+        of: ReducedSeries,
         tolerance: f64,
-    ) -> Result<Self, StepError> {
-        let of = system.series().map_err(|reason| StepError::Unsupported { reason })?;
+    ) -> Self {
         let (series, unknowns) = (Expansion::new(&of.recurrences), of.recurrences.unknowns());
         let [start, increments, rates] = [(); 3].map(|()| vec![0.0; unknowns]);
         let (pace, smoothness) = (Pace::of(tolerance), system.smoothness());
-        Ok(Self {
+        Self {
             of,
             series,
             pace,
@@ -53,7 +52,7 @@ impl Polynomial {
             increments,
             rates,
             power: None,
-        })
+        }
     }
 
     /// Lets no polynomial be longer than a step of the run (s), if a function of time may do something of which nothing tells before. Steps
@@ -78,7 +77,7 @@ impl Polynomial {
             t,
             state: *state,
             xi: [state.quasi_velocities(system, t)?, [0.0; N]],
-            unit: power_of_two(h.abs().clamp(SHORTEST, 1.0)),
+            unit: power_of_two_below(h.abs().clamp(SHORTEST, 1.0)),
             full: 0.0,
             forward: h > 0.0,
             sides: vec![0.0; self.of.recurrences.corners()].into(),
@@ -90,8 +89,8 @@ impl Polynomial {
         Ok(center)
     }
 
-    /// Goes on to the polynomial that begins at the end of this one. Returns false if the equations there are not those of the polynomial: it
-    /// is then made shorter, and nothing else changes.
+    /// Goes on to the polynomial that begins at the end of this one. Returns false if the equations there contradict this polynomial: then this
+    /// polynomial is made shorter, and nothing else changes.
     pub(super) fn go_on<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
@@ -103,7 +102,7 @@ impl Polynomial {
             self.rates_at(center, t - center.t);
         }
         self.advance(center, t)?;
-        (center.t, center.unit) = (t, power_of_two(full));
+        (center.t, center.unit) = (t, power_of_two_below(full));
         let turned = center.after.take();
         let at_corner = turned.is_some();
         center.before = turned.map(|sides| std::mem::replace(&mut center.sides, sides));
@@ -215,8 +214,7 @@ impl Polynomial {
         let (places, velocities) = self.start.split_at_mut(self.of.coordinates);
         places.iter_mut().zip(center.state.q()).for_each(|(x, q)| *x = *q);
         velocities.iter_mut().zip(&center.xi[0]).for_each(|(x, xi)| *x = *xi);
-        let (first, constants) = &self.of.constants;
-        let other = |k: usize| k.checked_sub(*first).and_then(|k| constants.get(k)).copied().unwrap_or(0.0);
+        let other = |variable: usize| self.of.constant(variable).map_or(0.0, |(_, x)| x);
         while (LEAST_UNIT..=f64::MAX).contains(&center.unit) {
             let at = (center.t, &self.start[..], &*center.sides);
             self.series.expand_with(&self.of.recurrences, at, center.unit, self.pace.order, other);
@@ -230,10 +228,4 @@ impl Polynomial {
         self.about = None;
         Err(StepError::NotFinite)
     }
-}
-
-/// The largest power of two that is not above a positive number.
-fn power_of_two(x: f64) -> f64 {
-    const EXPONENT: u64 = f64::INFINITY.to_bits();
-    larger(f64::from_bits(x.to_bits() & EXPONENT), f64::MIN_POSITIVE)
 }

@@ -25,13 +25,13 @@ impl TaylorFlow {
         Self { of, series }
     }
 
-    /// The tangents after the polynomials of a motion; each has a row for every unknown, and behind them one for every constant.
+    /// The tangents after the polynomials of a motion, whose series is `motion`; each has a row for every unknown, and behind them one for every constant.
     ///
     /// # Errors
     /// [`SensitivityError::Step`] if the motion fails, [`SensitivityError::Unsupported`] if a force jumps on the way.
     pub(crate) fn carried<const N: usize, const M: usize>(
         &mut self,
-        system: &dyn Mechanics<N, M>,
+        (system, motion): (&dyn Mechanics<N, M>, ReducedSeries),
         tolerance: f64,
         (t, h): (f64, f64),
         start: &State<N>,
@@ -40,13 +40,12 @@ impl TaylorFlow {
         const JUMPS: SensitivityError = SensitivityError::Unsupported {
             reason: "a force that jumps where the motion turns it round has no derivative",
         };
-        let mut polynomial = Polynomial::of(system, tolerance)?;
+        let mut polynomial = Polynomial::new(system, motion, tolerance);
         polynomial.within(h);
         let mut center = polynomial.begin(system, (t, h), start)?;
         let end = t + h;
-        for _ in 0..Taylor::<N>::MAX_STEPS {
-            let inside = (end - center.t).abs() <= center.full;
-            let to = if inside { end } else { center.end() };
+        for tries in 1..=Taylor::<N>::MAX_STEPS {
+            let (to, inside) = center.toward(end, h, tries)?;
             let next = self.along(&polynomial, &center, to, &tangents);
             if inside {
                 return Ok((polynomial.at(system, &center, end)?, next));
@@ -109,11 +108,8 @@ impl TaylorFlow {
         };
         let places: Vec<Seeded> = x.iter().enumerate().map(|(j, x)| seeded(*x, j)).collect();
         let sides: Vec<Seeded> = sides.iter().map(|side| Seeded::constant(*side)).collect();
-        let (first, constants) = &self.of.constants;
-        let other = |k: usize| {
-            let known = k.checked_sub(*first).and_then(|k| Some((k, *constants.get(k)?)));
-            known.map_or(Seeded::zero(), |(k, re)| seeded(re, x.len() + k))
-        };
+        let other =
+            |variable: usize| self.of.constant(variable).map_or(Seeded::zero(), |(k, re)| seeded(re, x.len() + k));
         self.series.expand_with(&self.of.recurrences, (Seeded::constant(t), &places, &sides), unit, order, other);
     }
 
@@ -165,9 +161,11 @@ pub(crate) fn step_derivative<const N: usize, const M: usize>(
     time: (f64, f64),
     [start, end]: [&State<N>; 2],
 ) -> Result<DMatrix<f64>, SensitivityError> {
-    let mut flow = TaylorFlow::new(system.series().map_err(|reason| SensitivityError::Unsupported { reason })?);
-    let (n, unknowns) = (flow.of.coordinates, flow.of.recurrences.unknowns());
-    let (there, found) = flow.carried(system, tolerance, time, start, DMatrix::identity(unknowns, unknowns))?;
+    let series = system.series().map_err(|reason| SensitivityError::Unsupported { reason })?;
+    let (n, unknowns) = (series.coordinates, series.recurrences.unknowns());
+    let mut flow = TaylorFlow::new(series.clone());
+    let (there, found) =
+        flow.carried((system, series), tolerance, time, start, DMatrix::identity(unknowns, unknowns))?;
     same_end(start, &there, end)?;
     let mut all = DMatrix::identity(2 * N - M, 2 * N - M);
     let place = |j: usize| if j < n { j } else { N + j - n };
