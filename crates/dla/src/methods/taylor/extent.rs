@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Longest polynomial, in its own unit of time.
 const LONGEST: f64 = 1e6;
-/// Length of a polynomial, in its own unit of time, if a length begins with zero, where it has no series.
+/// Length of a polynomial, in its own unit of time, if a length in the equations begins with zero: a length has no series at zero.
 const FROM_ZERO: f64 = 1e-8;
 /// Distance of corners that are one, as a part of the polynomial before them.
 const SAME_PLACE: f64 = 1e-13;
@@ -134,7 +134,7 @@ impl Polynomial {
         Ok(())
     }
 
-    /// Whether coefficients may be too small to tell of what is ahead: those of polynomials, sines and cosines are not.
+    /// Whether coefficients may be too small to foretell the motion; the coefficients of polynomials, sines and cosines never are.
     pub(super) fn doubted(&self) -> bool {
         self.smoothness.driven || self.smoothness.narrow
     }

@@ -14,7 +14,7 @@ const SHARE: f64 = 0.01;
 
 impl Pace {
     /// The order whose steps cost least. Terms fall off as powers of the step over the radius of convergence, and the time of a step grows
-    /// about as its order; where it grows as the square, half of this order is best (Jorba and Zou 2005, section 3.1).
+    /// about as its order; if the time grew as the square of the order, half of this order would be best (Jorba and Zou 2005, section 3.1).
     pub(super) fn of(epsilon: f64) -> Self {
         let epsilon = epsilon.max(1e-24);
         let order = (-0.7 * epsilon.ln()).ceil() + 3.0;
