@@ -189,8 +189,8 @@ impl<'a> ComparisonReference<'a> {
         if let Some(exact) = exact {
             return Self::Exact(exact);
         }
-        // Of a train by the best method that there is, and steps count by its coordinates.
-        let (best, size) = if system.train().is_some() { ("dla8", state.q().len() as u64) } else { ("gauss16", 1) };
+        // Of an assembly by the best method that it has, and steps count by its coordinates.
+        let (best, size) = if system.is_assembly() { ("dla8", state.q().len() as u64) } else { ("gauss16", 1) };
         if schedule.steps.saturating_mul(size) > REFERRED {
             return Self::None;
         }

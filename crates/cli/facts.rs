@@ -200,8 +200,12 @@ fn of_text(scene: &TextScene) -> Vec<(String, String)> {
     if model.constraints() > 0 {
         facts.push(("integrable", geometry.integrability()));
         facts.push(("growth vector", geometry.growth_told()));
-        facts
-            .push(("basis of admissible velocities", if model.gives_basis() { "given" } else { "derived" }.to_owned()));
+        let basis = match (model.gives_basis(), model.is_assembly()) {
+            (true, _) => "given",
+            (false, false) => "derived",
+            (false, true) => "none: no reduced equations of a system of this size",
+        };
+        facts.push(("basis of admissible velocities", basis.to_owned()));
     }
     if model.has_forces() {
         facts.push(("forces", scene.words.forces.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")));

@@ -156,8 +156,8 @@ pub(crate) fn measure(
     let mut halvings = 0;
     let (motion, reference) = loop {
         let motion = ReferenceMotion::new(&*mechanism, q, v, duration);
-        if system.train().is_some() {
-            let reference = of_train(&motion, apart)?;
+        if system.is_assembly() {
+            let reference = of_assembly(&motion, apart)?;
             break (motion, Ok(reference));
         }
         let reference = Reference::converged(&motion, &apart).map(|found| {
@@ -198,7 +198,7 @@ fn known(exact: Option<Vec<f64>>, computed: &Reference, apart: impl Fn(&[f64], &
 }
 
 /// The end of a train by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.
-fn of_train(motion: &ReferenceMotion<'_>, apart: impl Fn(&[f64], &[f64]) -> f64) -> Result<KnownEnd, CliError> {
+fn of_assembly(motion: &ReferenceMotion<'_>, apart: impl Fn(&[f64], &[f64]) -> f64) -> Result<KnownEnd, CliError> {
     /// Of one run.
     const LONG: Duration = Duration::from_secs(10);
     const FEWEST: u64 = 32;

@@ -5,6 +5,7 @@ use crate::joint::{Joint, JointElement};
 use crate::system_element::SystemElement;
 use dla::ConstraintRow;
 use lagrangian::{Piecewise, System};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A large system as an assembly of small ones: elements on coordinates that they share.
@@ -51,11 +52,16 @@ pub(crate) struct PlacedElement {
 impl PlacedElement {
     /// The element's part of a vector of the assembly.
     #[inline(always)]
-    pub(crate) fn gather(&self, from: impl Fn(usize) -> f64, into: &mut [f64; WIDEST]) -> usize {
+    pub(crate) fn gather(&self, from: impl Fn(usize) -> f64, into: &mut [f64]) {
         for (slot, at) in into.iter_mut().zip(&self.at) {
             *slot = from(*at);
         }
-        self.at.len()
+    }
+
+    /// The coordinates of an element that has more than can be shared: they follow one another.
+    #[inline(always)]
+    pub(crate) fn wide(&self) -> Option<Range<usize>> {
+        (self.at.len() > WIDEST).then(|| self.at[0]..self.at[0] + self.at.len())
     }
 }
 
@@ -71,10 +77,19 @@ impl Assembly {
     where
         Sys: System<N, M> + Piecewise + Send + Sync + 'static,
     {
-        let at = lagrangian::from_fn(|i| self.angles.len() + i);
-        self.angles.extend(system.angles());
-        self.place(name, Arc::new(SystemElement { system: Box::new(system) }), &at);
-        at
+        let first = self.angles.len();
+        self.part(name, SystemElement { system: Box::new(system) });
+        lagrangian::from_fn(|i| first + i)
+    }
+
+    /// Adds an element with coordinates of its own, of any number, and returns their numbers.
+    pub fn part(&mut self, name: &'static str, element: impl Element + 'static) -> Range<usize> {
+        let first = self.angles.len();
+        self.angles.resize(first + element.size().0, false);
+        element.angles(&mut self.angles[first..]);
+        let own = first..self.angles.len();
+        self.place(name, Arc::new(element), &own.clone().collect::<Vec<_>>());
+        own
     }
 
     /// Adds a system on existing coordinates: a spring between bodies, a force, a blade under a body.

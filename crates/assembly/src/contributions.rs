@@ -140,16 +140,19 @@ fn ask_all(elements: &[PlacedElement], starts: &[usize], out: &mut [f64], ask: (
     }
 }
 
-/// Gathers the numbers `of` the coordinates of an element, and calls `then` with them.
+/// Calls `then` with the numbers of the coordinates of an element. A wide element has the numbers themselves, others have copies.
 #[inline(always)]
-pub(crate) fn gathered<T>(placed: &PlacedElement, of: impl Fn(usize) -> f64, then: impl FnOnce(&[f64]) -> T) -> T {
+pub(crate) fn gathered<T>(placed: &PlacedElement, from: &[f64], then: impl FnOnce(&[f64]) -> T) -> T {
+    if let Some(own) = placed.wide() {
+        return then(&from[own]);
+    }
     let mut local = [0.0; WIDEST];
-    let n = placed.gather(of, &mut local);
-    then(&local[..n])
+    placed.gather(|i| from[i], &mut local);
+    then(&local[..placed.at.len()])
 }
 
 /// Gathers the coordinates and velocities of an element, and calls `then` with them.
 #[inline(always)]
 pub(crate) fn at<T>(placed: &PlacedElement, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
-    gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))
+    gathered(placed, q, |q| gathered(placed, v, |v| then(q, v)))
 }

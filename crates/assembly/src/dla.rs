@@ -116,7 +116,7 @@ impl SparseDla {
                 at(placed, q0, v, |q0, v| {
                     let then = |q1: &[f64]| placed.element.increment((t0, h), [q0, q1], v, out);
                     match &placed.origins {
-                        None => gathered(placed, |i| q1[i], then),
+                        None => gathered(placed, q1, then),
                         Some(origins) => relative(placed, origins, h, state, v, then),
                     }
                 });
@@ -156,7 +156,7 @@ impl SparseDla {
 
     /// The answer of an element to its numbers at the beginning of the step, its mean velocity and its velocity at the end.
     fn of_both<T>(&self, placed: &PlacedElement, ask: impl Fn(&[f64], &[f64], &[f64]) -> T) -> T {
-        at(placed, &self.q0, &self.v, |q0, v| gathered(placed, |i| self.v1[i], |v1| ask(q0, v, v1)))
+        at(placed, &self.q0, &self.v, |q0, v| gathered(placed, &self.v1, |v1| ask(q0, v, v1)))
     }
 
     /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`StepError::Overshoot`].

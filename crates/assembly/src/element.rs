@@ -2,8 +2,14 @@ use dla::NotANumber;
 use lagrangian::PowerSources;
 use std::fmt::Debug;
 
-/// Maximum number of coordinates of an element.
+/// Maximum number of coordinates of an element that shares them with others. An element that brings its own may have more.
 pub const WIDEST: usize = 24;
+
+/// Calls `then` with `n` zeros, which are on the stack for an element that shares its coordinates.
+#[inline(always)]
+pub(crate) fn with_room<T>(n: usize, then: impl FnOnce(&mut [f64]) -> T) -> T {
+    if n <= WIDEST { then(&mut [0.0; WIDEST][..n]) } else { then(&mut vec![0.0; n]) }
+}
 
 /// The first `N` numbers of a slice, with zeros for missing ones. Slices of an assembly are long enough.
 #[inline(always)]

@@ -1,6 +1,6 @@
 use crate::contributions::{Contributions, MatrixPart, at};
 use crate::dla::PARALLEL;
-use crate::element::WIDEST;
+use crate::element::with_room;
 use crate::linear::Linear;
 use crate::pattern::Pattern;
 use crate::{Assembly, AssemblyState, Solver};
@@ -152,15 +152,17 @@ impl AssemblySettling {
 pub(crate) fn add_terms(assembly: &Assembly, time: (f64, f64), (q, v): (&[f64], &[f64]), sizes: &mut [f64]) {
     let coordinates = assembly.coordinates();
     for placed in assembly.placed() {
-        let (mut momentum, mut level) = ([0.0; WIDEST], [0.0; WIDEST]);
-        let (n, m) = (placed.at.len(), placed.rows.min(WIDEST));
-        at(placed, q, v, |q, v| placed.element.sizes(time, q, v, &mut momentum[..n], &mut level[..m]));
-        for (i, size) in placed.at.iter().zip(&momentum[..n]) {
-            sizes[*i] += size;
-        }
-        for (to, size) in sizes[coordinates + placed.row..].iter_mut().zip(&level[..m]) {
-            *to += size;
-        }
+        with_room(placed.at.len(), |momentum| {
+            with_room(placed.rows, |level| {
+                at(placed, q, v, |q, v| placed.element.sizes(time, q, v, momentum, level));
+                for (i, size) in placed.at.iter().zip(momentum) {
+                    sizes[*i] += *size;
+                }
+                for (to, size) in sizes[coordinates + placed.row..].iter_mut().zip(level) {
+                    *to += *size;
+                }
+            });
+        });
     }
 }
 

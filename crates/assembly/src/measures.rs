@@ -1,9 +1,8 @@
 //! What an assembly says of a state.
 
-use crate::element::Element;
-use crate::element::WIDEST;
+use crate::element::{Element, with_room};
 use crate::{Assembly, AssemblyState};
-use dla::{AssemblyFault, NewtonError, NotANumber, StepError};
+use dla::{AssemblyFault, NotANumber, StepError};
 use lagrangian::linear::larger;
 
 impl Assembly {
@@ -15,14 +14,18 @@ impl Assembly {
         mut of: impl FnMut(&dyn Element, &[f64], &[f64]) -> T,
         mut with: impl FnMut(T),
     ) {
-        let (mut q, mut v) = ([0.0; WIDEST], [0.0; WIDEST]);
         for placed in self.placed() {
-            let n = placed.gather(&q_of, &mut q);
-            for (k, origin) in placed.origins.iter().flatten().enumerate() {
-                q[k] = origin.map_or(q[k], |origin| apart(placed.at[k], placed.at[origin]));
-            }
-            placed.gather(&v_of, &mut v);
-            with(of(placed.element.as_ref(), &q[..n], &v[..n]));
+            let n = placed.at.len();
+            with(with_room(n, |q| {
+                placed.gather(&q_of, q);
+                for (k, origin) in placed.origins.iter().flatten().enumerate() {
+                    q[k] = origin.map_or(q[k], |origin| apart(placed.at[k], placed.at[origin]));
+                }
+                with_room(n, |v| {
+                    placed.gather(&v_of, v);
+                    of(placed.element.as_ref(), q, v)
+                })
+            }));
         }
     }
 
@@ -47,36 +50,43 @@ impl Assembly {
         self.say((&q, v), |i, from| q(i) - q(from), of, with);
     }
 
-    /// The first element with a function that is not finite at a state, or has no finite derivative there; coordinates and rows in the
-    /// numbers of the assembly.
-    #[must_use]
+    /// The first element with a function that is not finite a `part` of a step ahead of a state, or has no finite derivative there;
+    /// coordinates and rows in the numbers of the assembly.
     #[cold]
-    pub fn not_a_number(&self, t: f64, state: &AssemblyState) -> Option<(usize, &'static str, NotANumber)> {
+    fn not_a_number(
+        &self,
+        (t, h): (f64, f64),
+        part: f64,
+        state: &AssemblyState,
+    ) -> Option<(usize, &'static str, NotANumber)> {
         let (mut places, mut found) = (self.placed().iter().enumerate(), None);
-        self.say_of_state(
-            state,
-            |element, q, v| element.not_a_number(t, q, v),
+        let ahead = |i: usize| part * h * state.v()[i];
+        self.say(
+            (|i| state.ahead(i, ahead(i)), |i| state.v()[i]),
+            |i, from| state.apart(i, from) + (ahead(i) - ahead(from)),
+            |element, q, v| element.not_a_number(t + part * h, q, v),
             |missing| {
                 let placed = places.next();
                 if let (None, Some((element, placed)), Some(missing)) = (found, placed, missing) {
                     let missing = missing.renumbered(|i| placed.at.get(i).copied().unwrap_or(i), placed.row);
-                    found = Some((element, placed.name, missing));
+                    found = Some((element, placed.name, NotANumber { at_node: part == 0.0, ..missing }));
                 }
             },
         );
         found
     }
 
-    /// The error of a step from `state` at `t` (s), with the function named that is not finite there, if it may have failed by that.
+    /// The error of a step from `state` of this time and length (s), with the function named that is not finite at its beginning, in its
+    /// middle or at its end, if it may have failed by that.
     #[must_use]
     #[cold]
-    pub fn named(&self, error: StepError, t: f64, state: &AssemblyState) -> StepError {
-        let lost = match error {
-            StepError::NotFinite | StepError::Assembly(AssemblyFault::Singular { .. }) => true,
-            StepError::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
-            _ => false,
-        };
-        let found = if lost { self.not_a_number(t, state) } else { None };
+    pub fn named(&self, error: StepError, step: (f64, f64), state: &AssemblyState) -> StepError {
+        let lost = matches!(
+            error,
+            StepError::NotFinite | StepError::Newton { .. } | StepError::Assembly(AssemblyFault::Singular { .. })
+        );
+        let found = || [0.0, 0.5, 1.0].into_iter().find_map(|part| self.not_a_number(step, part, state));
+        let found = if lost { found() } else { None };
         found.map_or(error, |(element, name, source)| AssemblyFault::NotANumber { element, name, source }.into())
     }
 

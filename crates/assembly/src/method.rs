@@ -16,7 +16,9 @@ static OTHERS: LazyLock<String> = LazyLock::new(|| {
     let able: Vec<&str> = METHODS.iter().filter(|info| info.assemblies).map(|info| info.name).collect();
     let (last, others) = able.split_last().map_or(("none", &[][..]), |(last, others)| (*last, others));
     let others = others.join(", ");
-    format!("the method is for systems of a few coordinates; for trains and other assemblies take {others} or {last}")
+    format!(
+        "the method is for systems of a few coordinates; for trains and other large systems take {others} or {last}"
+    )
 });
 
 /// The method of that kind for an assembly.

@@ -54,7 +54,7 @@ impl std::fmt::Debug for AssemblySubject<'_> {
 
 /// The refusal of the derivatives of steps.
 const NO_DERIVATIVES: SensitivityError =
-    SensitivityError::Unsupported { reason: "the steps of trains and other assemblies have no derivatives" };
+    SensitivityError::Unsupported { reason: "the steps of trains and other large systems have no derivatives" };
 
 impl Mechanism for AssemblySubject<'_> {
     fn size(&self) -> Size {
@@ -124,8 +124,8 @@ impl Mechanism for AssemblySubject<'_> {
         self.assembly.onto_constraint(time, self.assembly.own(state)?)
     }
 
-    fn explained(&self, (t, _): (f64, f64), state: &AnyState, error: StepError) -> StepError {
-        state.held().map_or(error, |state| self.assembly.named(error, t, state))
+    fn explained(&self, time: (f64, f64), state: &AnyState, error: StepError) -> StepError {
+        state.held().map_or(error, |state| self.assembly.named(error, time, state))
     }
 
     fn power_sources(&self) -> PowerSources {

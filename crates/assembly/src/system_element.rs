@@ -59,6 +59,12 @@ fn with_forces<const N: usize>(EndMomenta { slopes, forces }: EndMomenta<N>) -> 
     }
 }
 
+/// The configuration in the middle of a step.
+fn middle<const N: usize>(h: f64, q0: &[f64], v: &[f64]) -> [f64; N] {
+    let (q0, v): ([f64; N], [f64; N]) = (local(q0), local(v));
+    from_fn(|i| q0[i] + 0.5 * h * v[i])
+}
+
 impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
     fn size(&self) -> (usize, usize) {
         (N, M)
@@ -173,19 +179,24 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
 
     fn turn(&self, (t0, h): (f64, f64), q0: &[f64], v: &[f64]) -> f64 {
         let (q0, v): ([f64; N], [f64; N]) = (local(q0), local(v));
-        dla::turn(&self.system.angles(), &from_fn(|i| h * v[i]), |step| self.system.rows_along(t0, &q0, h, step))
+        let increment = from_fn(|i| h * v[i]);
+        dla::turn(&self.system.angles(), &increment, || self.system.rows_along(t0, &q0, h, &increment))
     }
 
     fn power_sources(&self) -> PowerSources {
         self.system.power_sources()
     }
 
-    fn damping(&self, step: (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> f64 {
-        dla::damping(&*self.system, step, &local(q0), [&local(v), &local(v1)])
+    fn damping(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> f64 {
+        let (t, q) = (t0 + 0.5 * h, middle(h, q0, v));
+        let forces = self.system.force(t, &q, &local(v)).zip(self.system.force(t, &q, &local(v1)));
+        forces.map_or(0.0, |(mean, end)| dla::damping(h, [v, v1], [&mean, &end]))
     }
 
-    fn inertia(&self, step: (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 2] {
-        dla::inertia(&*self.system, step, &local(q0), [&local(v), &local(v1)])
+    fn inertia(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 2] {
+        let (t, q): (_, [f64; N]) = (t0 + 0.5 * h, middle(h, q0, v));
+        let momentum = |v: &[f64]| self.system.momentum(t, &q, &local(v));
+        dla::inertia([v, v1], [&momentum(v), &momentum(v1)])
     }
 
     fn not_a_number(&self, t: f64, q: &[f64], v: &[f64]) -> Option<NotANumber> {

@@ -1,6 +1,6 @@
 use crate::Assembly;
 use crate::contributions::{at, gathered};
-use crate::element::{ElementBlocks, WIDEST};
+use crate::element::{ElementBlocks, with_room};
 use crate::motion::ElementMotion;
 use dla::{Hermite, Place};
 use lagrangian::PowerSources;
@@ -133,31 +133,27 @@ fn power(assembly: &Assembly, t: f64, q: &[f64], v: &[f64]) -> f64 {
 
 /// Whether a constraint moves: `b` does not vanish.
 pub(crate) fn moves(assembly: &Assembly, t: f64, q: &[f64]) -> bool {
-    let (mut level, rest) = ([0.0; WIDEST], [0.0; WIDEST]);
     assembly.placed().iter().filter(|placed| placed.rows > 0).any(|placed| {
-        let (n, m) = (placed.at.len(), placed.rows);
-        let level = &mut level[..m];
-        let out =
-            ElementBlocks { momentum: &mut [], level: &mut *level, block: &mut [], rows: &mut [], derivatives: false };
-        gathered(placed, |i| q[i], |q| placed.element.velocity(t, q, &rest[..n], out));
-        level.iter().any(|b| *b != 0.0)
+        with_room(placed.at.len(), |rest| {
+            with_room(placed.rows, |level| {
+                let (momentum, block, rows) = Default::default();
+                let out = ElementBlocks { momentum, level: &mut *level, block, rows, derivatives: false };
+                gathered(placed, q, |q| placed.element.velocity(t, q, rest, out));
+                level.iter().any(|b| *b != 0.0)
+            })
+        })
     })
 }
 
 /// `mu . A v`: on the constraint it is `-mu . b`, and off it keeps its order.
 fn carried(assembly: &Assembly, t: f64, q: &[f64], v: &[f64], multipliers: &[f64]) -> f64 {
-    let (mut momentum, mut rows) = ([0.0; WIDEST], [0.0; WIDEST * WIDEST]);
+    let mut numbers = Vec::new();
     let each = assembly.placed().iter().filter(|placed| placed.rows > 0).map(|placed| {
         let (n, m) = (placed.at.len(), placed.rows);
-        let rows = &mut rows[..m * n];
+        numbers.resize(n + m * n, 0.0);
+        let (momentum, rows) = numbers.split_at_mut(n);
         at(placed, q, v, |q, v| {
-            let out = ElementBlocks {
-                momentum: &mut momentum[..n],
-                level: &mut [],
-                block: &mut [],
-                rows: &mut *rows,
-                derivatives: false,
-            };
+            let out = ElementBlocks { momentum, level: &mut [], block: &mut [], rows: &mut *rows, derivatives: false };
             placed.element.beginning(t, q, v, out);
             let along = |row: &[f64]| row.iter().zip(v).map(|(a, v)| a * v).sum::<f64>();
             rows.chunks_exact(n).zip(&multipliers[placed.row..]).map(|(row, mu)| mu * along(row)).sum::<f64>()

@@ -169,7 +169,7 @@ fn a_force_without_a_derivative_is_named() {
                 assert!(outcome.is_ok() && state.v()[0] > 0.0, "{outcome:?}");
                 continue;
             }
-            let error = bodies.named(outcome.unwrap_err(), 2.0, &state);
+            let error = bodies.named(outcome.unwrap_err(), (2.0, 0.1), &state);
             assert_eq!(
                 error.to_string(),
                 "element 1 (slowed): the force on coordinate 3 has no finite derivative in velocity 3 at t = 2 s"

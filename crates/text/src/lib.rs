@@ -5,7 +5,8 @@
 //!    what is known there.
 //! 3. A [`TextStart`] is the admissible state that is nearest to a given one.
 //! 4. [`TextMechanics`] is the system from a start on. It has one of a few shapes, of which the smallest that has room is filled up: with
-//!    coordinates of unit mass that rest, and with constraints that hold them. An evaluation costs no more for it.
+//!    coordinates of unit mass that rest, and with constraints that hold them. An evaluation costs no more for it. A system for which no
+//!    shape has room keeps its own size, as the one element of an assembly.
 //!
 //! ```
 //! use text::{TextModel, Unit, Words};
@@ -29,6 +30,7 @@
 //! ```
 
 mod any;
+mod element;
 mod family;
 mod functions;
 mod geometry;
@@ -40,7 +42,7 @@ mod system;
 mod tapes;
 mod written;
 
-pub use any::{MOST_CONSTRAINTS, MOST_COORDINATES, TextMechanics};
+pub use any::TextMechanics;
 pub use expression::formulas::{Entry, Problem, TextError, Unit, Words};
 pub use family::{FREE, Family, FamilySystem};
 pub use functions::TextFunctions;

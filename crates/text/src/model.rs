@@ -1,6 +1,7 @@
+use crate::any::has_shape;
 use crate::reduced::EquationsOfBases;
 use crate::tapes::{TapePoint, Tapes};
-use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
+use crate::{Entry, TextError, Unit, Words};
 use expression::formulas::{Formulas, Parameters, RowElimination};
 use expression::{Corners, Expression};
 use lagrangian::Pivots;
@@ -79,15 +80,12 @@ impl TextModel {
     /// [`TextError`] with the first text that is wrong.
     pub fn new(words: &Words) -> Result<Self, TextError> {
         let (n, m) = (words.coordinates.len(), words.constraints.len() + words.positions.len());
-        if n > 0 && (n > MOST_COORDINATES || m > MOST_CONSTRAINTS) {
-            let most = [MOST_COORDINATES, MOST_CONSTRAINTS];
-            let problem = Problem::TooLarge { coordinates: n, constraints: m, most };
-            return Err(TextError { entry: Entry::System, problem });
-        }
+        let has_shape = m <= n && has_shape(n, m);
         let formulas = Formulas::of(words, Parameters::Numbers)?;
         let pieces = formulas.pieces().map_err(|error| TextError { entry: Entry::System, problem: error.into() })?;
         let whole = |mut formulas: Formulas| {
-            let eliminations = if formulas.basis.is_some() { None } else { formulas.eliminations() };
+            let derived = has_shape && formulas.basis.is_none();
+            let eliminations = if derived { formulas.eliminations() } else { None };
             Self::of(words, formulas, eliminations)
         };
         let pieces = match pieces {
@@ -174,6 +172,12 @@ impl TextModel {
     #[must_use]
     pub fn positions(&self) -> usize {
         self.positions
+    }
+
+    /// Whether no shape has room for the system, so that it has the methods of assemblies only and no reduced equations.
+    #[must_use]
+    pub fn is_assembly(&self) -> bool {
+        !has_shape(self.coordinates.len(), self.constraints())
     }
 
     /// The names of the outputs.

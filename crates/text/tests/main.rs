@@ -10,6 +10,7 @@
     reason = "what clippy.toml allows in tests, their helpers need too"
 )]
 
+mod copies;
 mod family;
 mod models;
 mod words;

@@ -180,26 +180,6 @@ fn constraints_may_determine_what_has_no_inertia() {
 }
 
 #[test]
-fn sizes_have_limits() {
-    let mut words = Words::default();
-    for k in 0..12 {
-        words.coordinates.push((format!("q{k}"), Unit::Angle));
-        words.lagrangian += &format!("{}q{k}'^2/2", if k == 0 { "" } else { " + " });
-    }
-    words.constraints = (0..6).map(|k| format!("q{k}' - q{}'", k + 6)).collect();
-    assert!(TextModel::new(&words).is_ok());
-    words.constraints.push("q0' - q1'".to_owned());
-    let error = TextModel::new(&words).unwrap_err();
-    assert_eq!(error.problem, Problem::TooLarge { coordinates: 12, constraints: 7, most: [12, 6] });
-    words.constraints.clear();
-    words.coordinates.push(("q12".to_owned(), Unit::Angle));
-    assert_eq!(
-        TextModel::new(&words).unwrap_err().problem,
-        Problem::TooLarge { coordinates: 13, constraints: 0, most: [12, 6] }
-    );
-}
-
-#[test]
 fn rates_that_are_left_out_follow_those_that_are_given() {
     let model = TextModel::new(&skate()).unwrap();
     let start = model.start(&[None, None, Some(0.5)], &[Some(1.0), None, Some(2.0)]).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::{Mechanics, StepError};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{Dual, from_fn, mapped};
+use lagrangian::{Dual, from_fn};
 use std::f64::consts::PI;
 
 /// A solution whose constraint turns by less than this in the step (rad) counts as near its start.
@@ -28,7 +28,8 @@ pub(crate) fn turn_of<const N: usize, const M: usize>(
     q0: &[f64; N],
     v: &[f64; N],
 ) -> f64 {
-    turn(&system.angles(), &from_fn(|i| h * v[i]), |increment| system.rows_along(t0, q0, h, increment))
+    let increment = from_fn(|i| h * v[i]);
+    turn(&system.angles(), &increment, || system.rows_along(t0, q0, h, &increment))
 }
 
 /// Refuses a step in which the velocity `v0` at its beginning would turn the constraint by half a turn or more: a rule that looks at the
@@ -60,37 +61,37 @@ fn turned_by<const N: usize, const M: usize>(
 ) -> StepError {
     let alone = |i: usize| {
         let increment = from_fn(|j| if j == i { h * v0[i] } else { 0.0 });
-        turned(system.rows_along(t0, q0, h, &increment))
+        turned(&system.rows_along(t0, q0, h, &increment))
     };
     let coordinate = (0..N).fold(0, |most, i| if alone(i) > alone(most) { i } else { most });
     StepError::Turn { coordinate, turn, step: h.abs() }
 }
 
-/// The angle by which an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its
-/// derivative along the increment.
+/// The angle by which an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the rows of `A` with their
+/// derivatives along the increment.
 ///
 /// Zero if no angle turns by more than 1 rad.
 #[inline(always)]
 #[must_use]
-pub fn turn<const N: usize, const M: usize>(
-    angles: &[bool; N],
-    increment: &[f64; N],
-    rows: impl FnOnce(&[f64; N]) -> [[Dual<f64, 1>; N]; M],
+pub fn turn<Rows: AsRef<[Row]>, Row: AsRef<[Dual<f64, 1>]>>(
+    angles: &[bool],
+    increment: &[f64],
+    rows: impl FnOnce() -> Rows,
 ) -> f64 {
-    let far = (0..N).any(|i| angles[i] && increment[i].abs() > NEAR);
-    if far { turned(rows(increment)) } else { 0.0 }
+    let far = angles.iter().zip(increment).any(|(angle, turn)| *angle && turn.abs() > NEAR);
+    if far { turned(rows().as_ref()) } else { 0.0 }
 }
 
 #[cold]
 #[inline(never)]
-fn turned<const N: usize, const M: usize>(a: [[Dual<f64, 1>; N]; M]) -> f64 {
-    let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
+fn turned<Row: AsRef<[Dual<f64, 1>]>>(rows: &[Row]) -> f64 {
+    let size = |row: &Row, of: fn(&Dual<f64, 1>) -> f64| row.as_ref().iter().map(|x| of(x).powi(2)).sum::<f64>().sqrt();
     // A row that is not affine has no place in `A`.
-    let turns = a.map(|row| match size(mapped(&row, |x| x.re)) {
+    let turns = rows.iter().map(|row| match size(row, |x| x.re) {
         0.0 => 0.0,
-        length => size(mapped(&row, |x| x.eps[0])) / length,
+        length => size(row, |x| x.eps[0]) / length,
     });
-    turns.iter().fold(0.0, |most, turn| larger(most, *turn))
+    turns.fold(0.0, larger)
 }
 
 /// Numerical continuation in the step length: the solution at the end of the branch that begins with `start` at length zero. `solve` finds

@@ -22,35 +22,28 @@ pub(crate) fn brakes_only<const N: usize, const M: usize>(
     q0: &[f64; N],
     (v, v1): (&[f64; N], &[f64; N]),
 ) -> Result<(), StepError> {
-    let damping = damping(system, (t0, h), q0, [v, v1]);
-    if damping > 0.0 { overshoot(damping, inertia(system, (t0, h), q0, [v, v1])) } else { Ok(()) }
-}
-
-/// The damping of the change of velocity from the middle of a step to its end (J); zero without forces.
-#[inline(always)]
-pub fn damping<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    (t0, h): (f64, f64),
-    q0: &[f64; N],
-    [v, v1]: [&[f64; N]; 2],
-) -> f64 {
     let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
     let forces = system.force(t, &q, v).zip(system.force(t, &q, v1));
-    forces.map_or(0.0, |(mean, end)| (0..N).map(|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])).sum())
+    let damping = forces.map_or(0.0, |(mean, end)| damping(h, [v, v1], [&mean, &end]));
+    if damping <= 0.0 || damping.is_nan() {
+        return Ok(());
+    }
+    overshoot(damping, inertia([v, v1], [&system.momentum(t, &q, v), &system.momentum(t, &q, v1)]))
 }
 
-/// The inertia of that change, and `|v . p|` (J).
-#[inline(never)]
-pub fn inertia<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    (t0, h): (f64, f64),
-    q0: &[f64; N],
-    [v, v1]: [&[f64; N]; 2],
-) -> [f64; 2] {
-    let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
-    let (mean, end) = (system.momentum(t, &q, v), system.momentum(t, &q, v1));
-    let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
-    [along(&|i| (v1[i] - v[i]) * (end[i] - mean[i])), along(&|i| (v[i] * mean[i]).abs())]
+/// The damping of the change of velocity from `v`, in the middle of a step of length `h` (s), to `v1` at its end (J): `forces` are those of
+/// the two velocities in the middle of the step.
+#[inline(always)]
+#[must_use]
+pub fn damping(h: f64, [v, v1]: [&[f64]; 2], [mean, end]: [&[f64]; 2]) -> f64 {
+    v.iter().zip(v1).zip(mean.iter().zip(end)).map(|((v, v1), (mean, end))| 0.5 * h * (v1 - v) * (mean - end)).sum()
+}
+
+/// The inertia of that change, and `|v . p|` (J); `mean` and `end` are the momenta of the two velocities.
+#[must_use]
+pub fn inertia([v, v1]: [&[f64]; 2], [mean, end]: [&[f64]; 2]) -> [f64; 2] {
+    let change = v.iter().zip(v1).zip(mean.iter().zip(end)).map(|((v, v1), (mean, end))| (v1 - v) * (end - mean));
+    [change.sum(), v.iter().zip(mean).map(|(v, p)| (v * p).abs()).sum()]
 }
 
 /// Compares the damping of a step with its inertia.

@@ -118,20 +118,6 @@ pub enum Problem {
     /// No coordinates.
     #[error("a system has at least one coordinate")]
     NoCoordinates,
-    /// More coordinates or constraints than there is room for.
-    #[error(
-        "{coordinates} coordinates with {constraints} constraints are too many: a system of text has at most {} coordinates and {} constraints",
-        most[0],
-        most[1]
-    )]
-    TooLarge {
-        /// How many coordinates there are.
-        coordinates: usize,
-        /// How many constraints.
-        constraints: usize,
-        /// How many of each there may be.
-        most: [usize; 2],
-    },
     /// More constraints than coordinates.
     #[error("there are more constraints ({constraints}) than coordinates ({coordinates})")]
     TooManyConstraints {

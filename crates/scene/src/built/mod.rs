@@ -244,6 +244,15 @@ impl<'a> Built<'a> {
         }
     }
 
+    /// Whether the system has the methods of assemblies only: a train, or a text with more coordinates than any shape.
+    #[must_use]
+    pub fn is_assembly(&self) -> bool {
+        match self {
+            Self::Sleigh(system) => system.train().is_some(),
+            Self::Text(system) => system.model().is_assembly(),
+        }
+    }
+
     /// The train, if blades follow a sleigh.
     #[must_use]
     pub fn train(&self) -> Option<&'a Train> {

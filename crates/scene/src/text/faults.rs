@@ -63,9 +63,7 @@ fn accepted(entry: Entry, words: &Words) -> String {
     };
     let time: &[&str] = &["t"];
     match entry {
-        Entry::System => {
-            format!("at most {} coordinates, and {} constraints", ::text::MOST_COORDINATES, ::text::MOST_CONSTRAINTS)
-        }
+        Entry::System => "coordinates, a Lagrangian, and no more constraints than coordinates".to_owned(),
         Entry::Coordinate(_) => "a name of letters, digits and `_`, with its unit in quotes, or \"angle\"".to_owned(),
         Entry::Parameter(_) => "a name of letters, digits and `_`, with a finite number".to_owned(),
         Entry::Abbreviation(k) => {
