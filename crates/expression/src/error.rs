@@ -11,6 +11,15 @@ pub enum Error {
         /// The character.
         found: char,
     },
+    /// A `=` in a text that is no equation, or a second one in an equation.
+    #[error(
+        "`=` has no place here (column {column}): a constraint is one equation, `left = right`, or a formula that vanishes, \
+        `left - (right)`; all other texts are formulas"
+    )]
+    Equation {
+        /// Where.
+        column: usize,
+    },
     /// A number that is not written as one.
     #[error("`{found}` is not a number (column {column})")]
     Number {
@@ -173,6 +182,7 @@ impl Error {
     pub fn column(&self) -> Option<usize> {
         match *self {
             Self::Character { column, .. }
+            | Self::Equation { column }
             | Self::Number { column, .. }
             | Self::UnknownName { column, .. }
             | Self::NotAFunction { column, .. }

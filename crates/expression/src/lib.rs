@@ -66,7 +66,7 @@ pub use error::Error;
 pub use function::Function;
 pub use graph::{Expression, Graph, Statements, Turned};
 pub use names::{Names, nearest};
-pub use parser::{Limits, parse, parse_within};
+pub use parser::{Limits, parse, parse_equation, parse_within};
 pub use recurrences::{Expansion, MOST_ORDERS, Recurrences};
 pub use series::Series;
 pub use symbol::{Symbol, trace};

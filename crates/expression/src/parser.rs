@@ -31,11 +31,23 @@ pub fn parse(text: &str, names: &Names) -> Result<Syntax, Error> {
     parse_within(text, names, &Limits::default())
 }
 
+/// Reads an equation as the formula that vanishes, its left side less its right one. A text without `=` is such a formula itself.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_equation(text: &str, names: &Names) -> Result<Syntax, Error> {
+    read(text, names, &Limits::default(), true)
+}
+
 /// Reads a text within other limits.
 ///
 /// # Errors
 /// As [`parse`].
 pub fn parse_within(text: &str, names: &Names, limits: &Limits) -> Result<Syntax, Error> {
+    read(text, names, limits, false)
+}
+
+fn read(text: &str, names: &Names, limits: &Limits, equation: bool) -> Result<Syntax, Error> {
     // A character has at least one byte: most texts need not be counted.
     if text.len() > limits.length {
         let length = text.chars().count();
@@ -43,7 +55,7 @@ pub fn parse_within(text: &str, names: &Names, limits: &Limits) -> Result<Syntax
             return Err(Error::TooLong { length, limit: limits.length });
         }
     }
-    let mut parser = Parser { tokens: Tokens::new(text), names, limits, open: Vec::new(), steps: Vec::new() };
+    let mut parser = Parser { tokens: Tokens::new(text), names, limits, equation, open: Vec::new(), steps: Vec::new() };
     parser.read()?;
     Ok(Syntax { steps: parser.steps })
 }
@@ -56,6 +68,7 @@ enum Open {
     Call { column: usize, at: usize, function: Function, commas: usize },
 }
 
+const EQUATION: u8 = 0;
 const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
 const SIGN: u8 = 3;
@@ -66,6 +79,8 @@ struct Parser<'a> {
     tokens: Tokens<'a>,
     names: &'a Names,
     limits: &'a Limits,
+    /// Whether a `=` may follow.
+    equation: bool,
     open: Vec<Open>,
     steps: Vec<SyntaxStep>,
 }
@@ -141,6 +156,13 @@ impl Parser<'_> {
             Token::Power => (Action::Power, POWER),
             Token::Close => return self.close(column),
             Token::Comma => return self.comma(column),
+            Token::Equals => {
+                self.finish(EQUATION)?;
+                if !std::mem::take(&mut self.equation) || !self.open.is_empty() {
+                    return Err(Error::Equation { column });
+                }
+                (Action::Subtract, EQUATION)
+            }
             found => return Err(self.expected_operator(column, &found)),
         };
         // A power waits for the one to its right.

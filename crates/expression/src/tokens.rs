@@ -16,6 +16,7 @@ pub(crate) enum Token<'a> {
     Open,
     Close,
     Comma,
+    Equals,
     End,
 }
 
@@ -33,6 +34,7 @@ impl Token<'_> {
             Self::Open => "`(`".to_owned(),
             Self::Close => "`)`".to_owned(),
             Self::Comma => "`,`".to_owned(),
+            Self::Equals => "`=`".to_owned(),
             Self::End => "the end of the text".to_owned(),
         }
     }
@@ -75,6 +77,7 @@ impl<'a> Tokens<'a> {
             '(' => Token::Open,
             ')' => Token::Close,
             ',' => Token::Comma,
+            '=' => Token::Equals,
             found => return Err(Error::Character { column, found }),
         };
         Ok((column, token))

@@ -50,7 +50,7 @@ fn a_system_is_what_its_texts_say() {
 #[test]
 fn errors_name_the_text_and_the_column() {
     type Case = (fn(&mut Words), Entry, Option<usize>, &'static str);
-    let cases: [Case; 17] = [
+    let cases: [Case; 22] = [
         (|w| w.coordinates.clear(), Entry::System, None, "at least one coordinate"),
         (|w| w.coordinates[1].0 = "x_dot".to_owned(), Entry::Coordinate(1), None, "is the rate of `x`"),
         (|w| w.coordinates[1].0 = "t".to_owned(), Entry::Coordinate(1), None, "`t` is time"),
@@ -71,6 +71,16 @@ fn errors_name_the_text_and_the_column() {
         (|w| w.constraints[0] = "x'*y'".to_owned(), Entry::Constraint(0), None, "the factor of `x'` contains `y'`"),
         (|w| w.constraints[0] = "x - 1".to_owned(), Entry::Constraint(0), None, "belongs in `positions`"),
         (|w| w.positions = vec!["x - y'".to_owned()], Entry::Position(0), Some(5), "no name `y'` is known"),
+        (
+            |w| w.constraints[0] = "x' = y' = 0".to_owned(),
+            Entry::Constraint(0),
+            Some(9),
+            "one equation, `left = right`",
+        ),
+        (|w| w.constraints[0] = "x'*(s = c)".to_owned(), Entry::Constraint(0), Some(7), "one equation, `left = right`"),
+        (|w| w.lagrangian += " = 0", Entry::Lagrangian, Some(40), "`left - (right)`"),
+        (|w| w.outputs[0].1 = "speed'".to_owned(), Entry::Output(0), Some(1), "its rate would contain accelerations"),
+        (|w| w.outputs[0].1 = "2*way_dot".to_owned(), Entry::Output(0), Some(3), "the abbreviation `way` jumps"),
         (|w| w.forces[0].0 = "phi".to_owned(), Entry::Force(0), None, "the coordinates are `x`, `y`, `theta`"),
         (|w| w.outputs[0].0 = "x'".to_owned(), Entry::Output(0), None, "names another column"),
     ];
@@ -79,6 +89,51 @@ fn errors_name_the_text_and_the_column() {
         assert_eq!((found, at), (entry, column), "{told}");
         assert!(told.contains(words), "{told}");
     }
+}
+
+#[test]
+fn an_equation_is_its_left_side_less_its_right_one() {
+    let mut words = skate();
+    words.constraints[0] = "y'*c = x'*s + 2*t".to_owned();
+    words.positions = vec!["x = y - 1 - (t - 2)".to_owned()];
+    let mut formulas = skate();
+    formulas.constraints[0] = "y'*c - (x'*s + 2*t)".to_owned();
+    formulas.positions = vec!["x - (y - 1 - (t - 2))".to_owned()];
+    assert_eq!(TextModel::new(&words).unwrap(), TextModel::new(&formulas).unwrap());
+    formulas.positions = vec!["x - y - 1 - (t - 2)".to_owned()];
+    assert_ne!(TextModel::new(&words).unwrap(), TextModel::new(&formulas).unwrap());
+}
+
+/// A bob on a skate, by the rates of its place and by what these are.
+#[test]
+fn an_abbreviation_has_a_rate() {
+    let mut words = skate();
+    let place = [("bob_x", "x + 2*c*sin(t)"), ("bob_y", "y + 2*s*sin(t)"), ("lift", "bob_x'*bob_y_dot")];
+    words.abbreviations.extend(place.map(|(name, text)| (name.to_owned(), text.to_owned())));
+    words.lagrangian += " + (bob_x'^2 + bob_y'^2)/2";
+    words.forces.push(("x".to_owned(), "-lift".to_owned()));
+    let mut by_hand = words.clone();
+    by_hand.abbreviations.truncate(4);
+    let rates = [
+        ("bx", "x' - 2*s*theta'*sin(t) + 2*c*cos(t)"),
+        ("by", "y' + 2*c*theta'*sin(t) + 2*s*cos(t)"),
+        ("lift", "bx*by"),
+    ];
+    by_hand.abbreviations.extend(rates.map(|(name, text)| (name.to_owned(), text.to_owned())));
+    by_hand.lagrangian = by_hand.lagrangian.replace("bob_x'", "bx").replace("bob_y'", "by");
+    for words in [&mut words, &mut by_hand] {
+        words.outputs.push(("lift".to_owned(), "lift".to_owned()));
+    }
+    let [one, other] = [words, by_hand.clone()].map(|words| TextModel::new(&words).unwrap());
+    let (t, q, v) = (0.4, [0.3, -0.2, 0.7], [1.1, 0.5, -0.9]);
+    let pairs = [(one.energy(t, &q, &v), other.energy(t, &q, &v)), (one.told(t, &q, &v)[2], other.told(t, &q, &v)[2])];
+    for (x, y) in pairs {
+        assert!((x - y).abs() < 1e-14 * y.abs(), "{x}, {y}");
+    }
+    // A name that is given keeps its meaning.
+    by_hand.abbreviations.push(("c'".to_owned(), "7*x'".to_owned()));
+    by_hand.outputs.push(("given".to_owned(), "c'".to_owned()));
+    assert_eq!(TextModel::new(&by_hand).unwrap().told(t, &q, &v).last(), Some(&(7.0 * v[0])));
 }
 
 #[test]

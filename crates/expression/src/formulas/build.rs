@@ -84,6 +84,16 @@ fn names(words: &Words, parameters: Parameters) -> Result<Tables, TextError> {
         let entry = Entry::Abbreviation(k);
         let (formula, from) = tables.abbreviation(text, entry)?;
         tables.add(name, formula, from, entry)?;
+        let [rate, spelled] = [format!("{name}'"), format!("{name}_dot")];
+        let is = |other: &str| other == rate || other == spelled;
+        if from != May::Place {
+            tables.without_rate.insert(name.clone(), from);
+        } else if !words.abbreviations.iter().any(|(other, _)| is(other))
+            && words.formulas().any(|text| text.contains(&rate) || text.contains(&spelled))
+        {
+            let meaning = tables.rate_along(formula);
+            tables.add(&rate, meaning, May::Move, entry)?;
+        }
     }
     Ok(tables)
 }
@@ -135,7 +145,7 @@ fn constraints(tables: &mut Tables, words: &Words) -> Result<(Vec<Expression>, V
     let (mut rows, mut level) = (Vec::new(), Vec::new());
     for (k, text) in words.constraints.iter().enumerate() {
         let entry = Entry::Constraint(k);
-        let row = tables.build(text, May::Move, entry)?;
+        let row = tables.equation(text, May::Move, entry)?;
         tables.periodic(words, row, entry)?;
         let graph = &mut tables.graph;
         let slopes = graph.gradient(row, &rates);
@@ -162,7 +172,7 @@ fn positions(tables: &mut Tables, words: &Words) -> Result<Positions, TextError>
     let (mut functions, mut rates) = (Vec::new(), Vec::new());
     for (k, text) in words.positions.iter().enumerate() {
         let entry = Entry::Position(k);
-        let function = tables.build(text, May::Place, entry)?;
+        let function = tables.equation(text, May::Place, entry)?;
         tables.periodic(words, function, entry)?;
         let graph = &mut tables.graph;
         let slopes = graph.gradient(function, &places);

@@ -65,7 +65,7 @@ impl TextError {
     pub fn column(&self) -> Option<usize> {
         match &self.problem {
             Problem::Expression(error) => error.column(),
-            Problem::Sign { column } => Some(*column),
+            Problem::Sign { column } | Problem::RateOf { column, .. } => Some(*column),
             _ => None,
         }
     }
@@ -82,6 +82,19 @@ pub enum Problem {
     Sign {
         /// Where.
         column: usize,
+    },
+    /// The rate of an abbreviation that has none.
+    #[error(
+        "`{name}'` is not known: the abbreviation `{name}` {} (column {column})",
+        if *jumps { "jumps" } else { "contains rates, and its rate would contain accelerations" }
+    )]
+    RateOf {
+        /// Where.
+        column: usize,
+        /// The abbreviation.
+        name: String,
+        /// Whether it jumps; else it contains rates.
+        jumps: bool,
     },
     /// A constraint whose derivative in a rate contains rates.
     #[error("the constraint is not affine in the rates: the factor of `{rate}` contains `{other}`")]

@@ -47,8 +47,8 @@ impl Unit {
 
 /// The texts of a system, in the order in which they were written.
 ///
-/// In a text `t` is time (s), `x'` or `x_dot` the rate of the coordinate `x`. Formulas may use parameters and earlier abbreviations; see
-/// [the crate](crate) for the rest of the syntax.
+/// In a text `t` is time (s), `x'` or `x_dot` the rate of the coordinate `x`. Formulas may use parameters and earlier abbreviations, and the
+/// rates along the motion of those abbreviations that contain no rates; see [the crate](crate) for the rest of the syntax.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Words {
     /// Coordinates with their units.
@@ -59,9 +59,9 @@ pub struct Words {
     pub abbreviations: Vec<(String, String)>,
     /// The Lagrangian (J).
     pub lagrangian: String,
-    /// Constraints on velocities: formulas that vanish, affine in the rates.
+    /// Constraints on velocities, affine in the rates: equations, or formulas that vanish.
     pub constraints: Vec<String>,
-    /// Constraints on positions: formulas that vanish, without rates.
+    /// Constraints on positions, without rates: equations, or formulas that vanish.
     pub positions: Vec<String>,
     /// Generalised forces, by the name of the coordinate on which they act.
     pub forces: Vec<(String, String)>,
@@ -69,6 +69,15 @@ pub struct Words {
     pub basis: Vec<Vec<String>>,
     /// Further quantities to output: names with their formulas.
     pub outputs: Vec<(String, String)>,
+}
+
+impl Words {
+    /// All texts that are formulas.
+    pub(crate) fn formulas(&self) -> impl Iterator<Item = &str> {
+        let named = [&self.abbreviations, &self.forces, &self.outputs].into_iter().flatten().map(|(_, text)| text);
+        let lists = [&self.constraints, &self.positions].into_iter().chain(&self.basis).flatten();
+        named.chain(lists).chain([&self.lagrangian]).map(String::as_str)
+    }
 }
 
 /// The form of a system's parameters in its formulas.

@@ -1,5 +1,6 @@
 use super::{Entry, Problem, TextError};
-use crate::{Expression, Function, Graph, Names, Syntax, parse};
+use crate::{Error, Expression, Function, Graph, Names, Syntax, parse, parse_equation};
+use std::collections::HashMap;
 
 /// Names that texts of one kind may use, with their meanings.
 #[derive(Debug, Default)]
@@ -9,7 +10,7 @@ pub(crate) struct TextTable {
 }
 
 impl TextTable {
-    fn add(&mut self, name: &str, meaning: Expression) -> Result<(), crate::Error> {
+    fn add(&mut self, name: &str, meaning: Expression) -> Result<(), Error> {
         self.names.add(name)?;
         self.meanings.push(meaning);
         Ok(())
@@ -36,6 +37,8 @@ pub(crate) struct Tables {
     place: TextTable,
     moving: TextTable,
     jumping: TextTable,
+    /// Abbreviations that are made of rates, or jump: these have no rate.
+    pub(crate) without_rate: HashMap<String, May>,
 }
 
 /// Maximum number of terms and factors in all formulas of a system and their derivatives.
@@ -49,6 +52,7 @@ impl Tables {
             place: TextTable::default(),
             moving: TextTable::default(),
             jumping: TextTable::default(),
+            without_rate: HashMap::new(),
         }
     }
 
@@ -71,19 +75,57 @@ impl Tables {
         Ok(())
     }
 
+    /// The rate of a function of time and coordinates along the motion.
+    pub(crate) fn rate_along(&mut self, formula: Expression) -> Expression {
+        let mut rate = self.graph.derivative(formula, 0);
+        for i in 0..self.n {
+            let (slope, v) = (self.graph.derivative(formula, 1 + i as u32), self.graph.variable(self.rate(i)));
+            let along = self.graph.product(&[slope, v]);
+            rate = self.graph.sum(&[rate, along]);
+        }
+        rate
+    }
+
     /// The formula of a text.
     pub(crate) fn build(&mut self, text: &str, may: May, entry: Entry) -> Result<Expression, TextError> {
+        self.built(parse, text, may, entry)
+    }
+
+    /// The formula of a text that vanishes, or of the left side of an equation less the right one.
+    pub(crate) fn equation(&mut self, text: &str, may: May, entry: Entry) -> Result<Expression, TextError> {
+        self.built(parse_equation, text, may, entry)
+    }
+
+    fn built(
+        &mut self,
+        read: fn(&str, &Names) -> Result<Syntax, Error>,
+        text: &str,
+        may: May,
+        entry: Entry,
+    ) -> Result<Expression, TextError> {
         let fail = |problem: Problem| TextError { entry, problem };
         let table = match may {
             May::Place => &self.place,
             May::Move => &self.moving,
             May::Jump => &self.jumping,
         };
-        let syntax = parse(text, &table.names).map_err(|error| fail(error.into()))?;
+        let syntax = read(text, &table.names).map_err(|error| fail(self.named(error)))?;
         if let Some(column) = syntax.first_use(Function::Sign).filter(|_| may != May::Jump) {
             return Err(fail(Problem::Sign { column }));
         }
         self.graph.build(&syntax, &table.meanings).map_err(|error| fail(error.into()))
+    }
+
+    /// The problem of a text with this error.
+    fn named(&self, error: Error) -> Problem {
+        if let Error::UnknownName { column, name, .. } = &error
+            && let Some(of) = name.strip_suffix('\'').or_else(|| name.strip_suffix("_dot"))
+            && let Some(from) = self.without_rate.get(of)
+        {
+            let (column, name) = (*column, of.to_owned());
+            return Problem::RateOf { column, name, jumps: *from == May::Jump };
+        }
+        error.into()
     }
 
     /// The formula of an abbreviation, and the permission that a text needs to use it.

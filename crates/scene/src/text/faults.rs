@@ -98,6 +98,7 @@ fn length(problem: &Problem) -> usize {
         Problem::Expression(
             expression::Error::UnknownName { name, .. } | expression::Error::NotAFunction { name, .. },
         ) => name.chars().count(),
+        Problem::RateOf { name, .. } => name.chars().count() + 1,
         Problem::Sign { .. } => "sign".len(),
         _ => 1,
     }
