@@ -9,6 +9,10 @@ mod bodies;
 
 mod corners;
 
+mod paper;
+
+mod reactions;
+
 mod trains;
 
 use crate::program::{Folder, TEXTS, csv, keys};

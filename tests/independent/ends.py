@@ -1,4 +1,4 @@
-"""End states and works of random systems of text by several methods, at the order claimed, against DOP853 on equations derived by SymPy."""
+"""End states, works and multipliers of random systems of text by several methods, at the order claimed, against DOP853 on equations derived by SymPy."""
 
 import sys
 
@@ -66,6 +66,16 @@ def balanced(findings, where, shown, energies, error):
         findings.fail("work", **where, told=shown["work"], right=energies[-1] - energies[0])
 
 
+def carried(findings, where, draw, final):
+    """The multipliers of the constraints at the state where the run ended."""
+    names = [*draw.system.units, *(f"{name}'" for name in draw.system.units)]
+    right = draw.numbers.multipliers(final["t"], np.array([final[name] for name in names], dtype=float))
+    told = np.array([final[f"lambda{k + 1}"] for k in range(right.size)], dtype=float)
+    findings.count("multipliers", right.size)
+    if not np.abs(told - right).max(initial=0.0) <= 1e-9 * (1 + np.abs(right).max(initial=0.0)):
+        findings.fail("multipliers", **where, told=told.tolist(), right=right.tolist())
+
+
 def judge(program, findings, draw, file, method, truth, floor, measure, energies):
     errors = []
     for part in (1, 2, 4):
@@ -84,6 +94,7 @@ def judge(program, findings, draw, file, method, truth, floor, measure, energies
         if answer.shown["constraint"]["max"] > 1e-12 * measure[1]:
             findings.fail("constraint", **where, residual=answer.shown["constraint"]["max"])
         balanced(findings, where, answer.shown["energy"], energies, errors[-1])
+        carried(findings, where, draw, answer.shown["final"])
         if method in OWN_STEPS:
             if errors[-1] > 10 * floor:
                 findings.fail("end", **where, error=errors[-1], bar=10 * floor)

@@ -63,6 +63,9 @@ class System:
         for key, formulas in (("constraints", self.rows), ("positions", self.positions)):
             if formulas:
                 lines.append(f"{key} = {quoted([str(formula) for formula in formulas])}")
+        told = [f"lambda{k + 1}" for k in range(len(self.rows) + len(self.positions))]
+        if told:
+            lines.append("outputs = { " + ", ".join(f"{name} = {quoted(name)}" for name in told) + " }")
         if self.forces:
             lines.append("forces = { " + ", ".join(f"{n} = {quoted(str(f))}" for n, f in self.forces.items()) + " }")
         lines.append("[start]")
@@ -109,6 +112,14 @@ class Numbers:
 
     def flow(self, t, z):
         """The derivative of `z = (q, v)`."""
+        return np.concatenate([z[self.size :], self.solved(t, z)[0]])
+
+    def multipliers(self, t, z):
+        """`lambda` of `M a = f + A' lambda`."""
+        return -self.solved(t, z)[1]
+
+    def solved(self, t, z):
+        """The solution `(a, lambda)` of `[M, A'; A, 0] (a, lambda) = (f, gamma)`."""
         n, m = self.size, self.shape[0]
         mass, f, rows, gamma, _, _ = self.values(z, t)
         # Light and heavy coordinates in one measure.
@@ -120,7 +131,7 @@ class Numbers:
         saddle[n:, :n] /= size[:, None]
         saddle[:n, n:] = saddle[n:, :n].T
         solved = np.linalg.solve(saddle, np.concatenate([f * measure, gamma / size]))
-        return np.concatenate([z[n:], solved[:n] * measure])
+        return solved[:n] * measure, solved[n:] / size
 
     def slope(self, t, z):
         """The Jacobian of the flow by complex steps, exact to round-off."""

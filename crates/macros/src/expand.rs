@@ -1,6 +1,6 @@
 use crate::read::{Described, Kind};
 use expression::Expression;
-use expression::formulas::{Formulas, Parameters, ReducedFormulas, TextError, Unit};
+use expression::formulas::{Entry, Formulas, Parameters, ReducedFormulas, TextError, Unit};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use std::str::FromStr;
@@ -56,6 +56,13 @@ fn structure(
     let formulas = printer.formulas;
     let n = formulas.n;
     let coordinates = described.words.coordinates.iter().map(|(name, _)| name);
+    if formulas.multipliers.is_some() {
+        let first = described.words.outputs.iter().position(|(_, text)| text.contains("lambda"));
+        let place = first.map_or(Entry::System, Entry::Output);
+        let problem =
+            "a structure has no multipliers `lambda1`, ..: `Motion` has them, and outputs of scenes may contain them";
+        return Err(Error::new(described.place(place), problem));
+    }
     let mut outputs = TokenStream::new();
     for ((output, text), &formula) in described.words.outputs.iter().zip(&formulas.outputs) {
         let name: Ident = syn::parse_str(output)

@@ -250,3 +250,19 @@ def test_systems_stay_systems() -> None:
     system = noslip.System(["x"], "x'^2/2 - 2*x^2", q=[1.0])
     for other in (pickle.loads(pickle.dumps(system)), copy.deepcopy(system), system.started(q=[1.0])):
         assert other == system and other.run(q=[0.5], duration=1.0)["x"][0] == 0.5
+
+
+def test_constraints_have_names_forces_and_equations() -> None:
+    x, y, th = dynamicsymbols("x y th")
+    system = noslip.System(
+        {"x": "m", "y": "m", "th": "angle"},
+        "(x'^2 + y'^2)/2 + 0.3*th'^2/2",
+        {"edge": sp.Eq(y.diff(t) * sp.cos(th), x.diff(t) * sp.sin(th))},
+        outputs={"grip": ("lambda_edge", "N"), "other": "2*lambda_edge"},
+        v=[1.0, 0.0, 0.5],
+    )
+    run = system.run(method="gauss8", duration=1.0)
+    np.testing.assert_allclose(run["grip"], 0.5, rtol=1e-12)
+    np.testing.assert_allclose(run["other"], 1.0, rtol=1e-12)
+    listed = noslip.System(["x", "y"], "(x'^2 + y'^2)/2", ["x' = y'"], outputs={"pull": "lambda1"}, v=[1.0, 1.0])
+    assert (listed.run(duration=0.1)["pull"] == 0.0).all()

@@ -56,3 +56,42 @@ proptest! {
         }
     }
 }
+
+/// The multipliers of each bundled text, by its formulas and by those of its system in a shape.
+#[test]
+fn multipliers_are_those_of_the_equations_of_motion() {
+    let mut rows = 0;
+    for bundled in bundled_texts() {
+        let AnyScene::Text(scene) = AnyScene::load(bundled.name, METHODS).unwrap() else { panic!("{}", bundled.name) };
+        let built = scene.built().unwrap();
+        let [_, expected] = built.system().mechanism().motion(0.0, &built.q, &built.v).unwrap();
+        let found = scene.model.multipliers(0.0, &scene.start.q, &scene.start.v);
+        let size = found.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() <= 1e-10 * size, "{}: {found} and {expected}", bundled.name);
+        }
+        rows += found.len();
+    }
+    assert!(rows > 20, "{rows}");
+}
+
+/// A scene that is written as a file is the same scene, with the names of its constraints and the units of its outputs.
+#[test]
+fn a_written_scene_reads_back() {
+    let named = "\
+[system]
+coordinates = { x = \"m\", y = \"m\" }
+lagrangian = \"(x'^2 + y'^2)/2\"
+constraints = { row = \"x' = 2*y'\" }
+outputs = { pull = { formula = \"lambda_row\", unit = \"N\" }, twice = \"2*x\" }
+[run]
+step = 0.05
+duration = 2.0
+";
+    let loaded = bundled_texts().iter().map(|bundled| AnyScene::load(bundled.name, METHODS).unwrap());
+    for scene in loaded.chain([AnyScene::parse(named, "named.toml", METHODS).unwrap()]) {
+        let written = AnyScene::parse(&scene.to_toml().unwrap(), "again.toml", METHODS).unwrap();
+        let [AnyScene::Text(scene), AnyScene::Text(written)] = [scene, written] else { panic!("texts") };
+        assert_eq!(scene.words, written.words);
+    }
+}

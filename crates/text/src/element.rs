@@ -1,5 +1,5 @@
 use crate::TextModel;
-use crate::tapes::{TapePoint, Tapes};
+use crate::slices::TextSlices;
 use assembly::{Element, ElementBlocks};
 use dla::{Derivative, NotANumber, SystemFunction, Variable};
 use lagrangian::linear::largest;
@@ -24,63 +24,21 @@ impl TextElement {
         Self { model, sides: Vec::new() }
     }
 
+    /// The functions of the system.
+    fn on<S: Scalar>(&self) -> TextSlices<'_, S> {
+        TextSlices::of(&self.model, &self.sides)
+    }
+
     fn n(&self) -> usize {
         self.model.coordinates.len()
-    }
-
-    fn m(&self) -> usize {
-        self.model.constraints()
-    }
-
-    /// The values of some formulas.
-    fn all<S: Scalar>(&self, count: usize, of: &Tapes, t: S, q: &[S], v: &[S]) -> Vec<S> {
-        let mut all = vec![S::zero(); count];
-        of.evaluate(self.n(), TapePoint { t, q, v, p: &[], sides: &self.sides }, |k, x| all[k] = x);
-        all
-    }
-
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S], v: &[S]) -> S {
-        self.all(1, &self.model.lagrangian, t, q, v)[0]
-    }
-
-    /// `L_q`, then `L_v`.
-    fn slopes<S: Scalar>(&self, t: S, q: &[S], v: &[S]) -> Vec<S> {
-        self.all(2 * self.n(), &self.model.slopes, t, q, v)
-    }
-
-    fn momentum<S: Scalar>(&self, t: S, q: &[S], v: &[S]) -> Vec<S> {
-        self.all(self.n(), &self.model.momentum, t, q, v)
-    }
-
-    /// The forces; zeros if there are none.
-    fn force<S: Scalar>(&self, t: S, q: &[S], v: &[S]) -> Vec<S> {
-        self.model.force.as_ref().map_or_else(|| vec![S::zero(); self.n()], |force| self.all(self.n(), force, t, q, v))
-    }
-
-    /// `A` by rows, then `b`.
-    fn constraint<S: Scalar>(&self, t: S, q: &[S]) -> Vec<S> {
-        self.all((self.n() + 1) * self.m(), &self.model.constraint, t, q, &[])
-    }
-
-    /// `A v + b`.
-    fn residual<S: Scalar>(&self, t: S, q: &[S], v: &[S]) -> Vec<S> {
-        let constraint = self.constraint(t, q);
-        let (a, b) = constraint.split_at(self.n() * self.m());
-        let row = |k: usize| a[k * v.len()..].iter().zip(v).fold(b[k], |sum, (a, v)| sum + *a * *v);
-        (0..self.m()).map(row).collect()
-    }
-
-    /// The functions of the constraints on positions, which are the last.
-    fn positions<S: Scalar>(&self, t: S, q: &[S]) -> Vec<S> {
-        self.all(self.model.positions, &self.model.holonomic, t, q, &[])
     }
 
     /// `h (L_q + F) / 2` at the middle of a step, and `L_v` there: the momenta at its ends are the first less and plus the second.
     fn halves<S: Scalar>(&self, (t0, h): (f64, f64), q: &[S], v: &[S]) -> [Vec<S>; 2] {
         let t = S::constant(t0 + 0.5 * h);
-        let mut slopes = self.slopes(t, q, v);
+        let mut slopes = self.on().slopes(t, q, v);
         let momentum = slopes.split_off(self.n());
-        for (slope, force) in slopes.iter_mut().zip(self.force(t, q, v)) {
+        for (slope, force) in slopes.iter_mut().zip(self.on().force(t, q, v)) {
             *slope = (*slope + force) * (0.5 * h);
         }
         [slopes, momentum]
@@ -124,7 +82,7 @@ impl TextElement {
 
 impl Element for TextElement {
     fn size(&self) -> (usize, usize) {
-        (self.n(), self.m())
+        (self.n(), self.model.constraints())
     }
 
     fn acts(&self) -> bool {
@@ -147,8 +105,8 @@ impl Element for TextElement {
     }
 
     fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
-        out.momentum.copy_from_slice(&self.momentum(t, q, v));
-        out.rows.copy_from_slice(&self.constraint(t, q)[..out.rows.len()]);
+        out.momentum.copy_from_slice(&self.on().momentum(t, q, v));
+        out.rows.copy_from_slice(&self.on().constraint(t, q)[..out.rows.len()]);
     }
 
     fn increment(&self, step: (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], out: ElementBlocks<'_>) {
@@ -162,7 +120,7 @@ impl Element for TextElement {
                     out.momentum[i] = d1.re;
                     self.write(&own, out.block, i, &d1);
                 }
-                for (k, w) in self.residual(Dual::fixed(t), q, v).iter().enumerate() {
+                for (k, w) in self.on().residual(Dual::fixed(t), q, v).iter().enumerate() {
                     out.level[k] = -w.re;
                     self.write(&own, out.rows, k, w);
                 }
@@ -172,14 +130,14 @@ impl Element for TextElement {
             for (to, (half, p)) in out.momentum.iter_mut().zip(halves.iter().zip(&momentum)) {
                 *to = half - p;
             }
-            for (level, w) in out.level.iter_mut().zip(self.residual(t, &q, v)) {
+            for (level, w) in out.level.iter_mut().zip(self.on().residual(t, &q, v)) {
                 *level = -w;
             }
         }
         // Where it constrains positions, in place of the discrete constraint.
         if self.model.positions > 0 {
-            let (n, rows) = (self.n(), self.constraint(t0 + h, q1));
-            for (g, k) in self.positions(t0 + h, q1).into_iter().zip(self.model.velocities..) {
+            let (n, rows) = (self.n(), self.on().constraint(t0 + h, q1));
+            for (g, k) in self.on().positions(t0 + h, q1).into_iter().zip(self.model.velocities..) {
                 let row = &rows[k * n..(k + 1) * n];
                 let rounding: f64 = row.iter().zip(q1).map(|(slope, q)| (slope * q).abs()).sum();
                 out.level[k] = if g.abs() <= 2.0 * f64::EPSILON * rounding { 0.0 } else { -g / h };
@@ -200,14 +158,14 @@ impl Element for TextElement {
     fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         let n = self.n();
         if out.derivatives {
-            let mass = self.all(n * n + n, &self.model.mass, t, q, v);
+            let mass = self.on().mass(t, q, v);
             out.block.copy_from_slice(&mass[..n * n]);
             out.momentum.copy_from_slice(&mass[n * n..]);
-            out.rows.copy_from_slice(&self.constraint(t, q)[..n * self.m()]);
+            out.rows.copy_from_slice(&self.on().constraint(t, q)[..n * self.model.constraints()]);
         } else if !out.momentum.is_empty() {
-            out.momentum.copy_from_slice(&self.momentum(t, q, v));
+            out.momentum.copy_from_slice(&self.on().momentum(t, q, v));
         }
-        for (level, w) in out.level.iter_mut().zip(self.residual(t, q, v)) {
+        for (level, w) in out.level.iter_mut().zip(self.on().residual(t, q, v)) {
             *level = -w;
         }
     }
@@ -216,47 +174,38 @@ impl Element for TextElement {
     fn sizes(&self, (t, h): (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]) {
         let once = |x: &[f64]| -> Vec<Rounded> { x.iter().copied().map(Rounded::once).collect() };
         let (t, q, v) = (Rounded::exact(t), once(q), once(v));
-        let (slopes, force) = (self.slopes(t, &q, &v), self.force(t, &q, &v));
+        let (slopes, force) = (self.on().slopes(t, &q, &v), self.on().force(t, &q, &v));
         for (i, size) in momentum.iter_mut().enumerate() {
             *size = slopes[self.n() + i].size + h.abs() * (slopes[i].size + force[i].size);
         }
-        let positions = self.positions(t, &q);
-        for (k, (size, w)) in level.iter_mut().zip(self.residual(t, &q, &v)).enumerate() {
+        let positions = self.on().positions(t, &q);
+        for (k, (size, w)) in level.iter_mut().zip(self.on().residual(t, &q, &v)).enumerate() {
             *size = w.size + self.position_of(k).map_or(0.0, |g| positions[g].size / h.abs());
         }
     }
 
     fn motion(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
-        let n = self.n();
-        // Along the motion at frozen velocity, `(t', q', v') = (1, v, 0)`.
-        let along_t = Dual { re: t, eps: [1.0] };
-        let along_q: Vec<_> = q.iter().zip(v).map(|(q, v)| Dual { re: *q, eps: [*v] }).collect();
-        let still: Vec<_> = v.iter().copied().map(Dual::fixed).collect();
-        let (slopes, force) = (self.slopes(along_t, &along_q, &still), self.force(t, q, v));
-        for (i, right) in out.momentum.iter_mut().enumerate() {
-            *right = slopes[i].re + force[i] - slopes[n + i].eps[0];
-        }
-        out.block.copy_from_slice(&self.all(n * n + n, &self.model.mass, t, q, v)[..n * n]);
-        out.rows.copy_from_slice(&self.constraint(t, q)[..n * self.m()]);
-        for (level, rate) in out.level.iter_mut().zip(self.residual(along_t, &along_q, &still)) {
-            *level = -rate.eps[0];
-        }
+        let motion = self.on().motion(t, q, v);
+        out.block.copy_from_slice(&motion.block);
+        out.rows.copy_from_slice(&motion.rows);
+        out.momentum.copy_from_slice(&motion.right);
+        out.level.copy_from_slice(&motion.level);
     }
 
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
-        let along: f64 = self.momentum(t, q, v).iter().zip(v).map(|(p, v)| p * v).sum();
-        along - self.lagrangian(t, q, v)
+        let along: f64 = self.on().momentum(t, q, v).iter().zip(v).map(|(p, v)| p * v).sum();
+        along - self.on().lagrangian(t, q, v)
     }
 
     fn power(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let fixed = |x: &[f64]| -> Vec<_> { x.iter().copied().map(Dual::fixed).collect() };
-        let of_time = self.lagrangian(Dual { re: t, eps: [1.0] }, &fixed(q), &fixed(v)).eps[0];
-        let of_forces: f64 = self.force(t, q, v).iter().zip(v).map(|(force, v)| force * v).sum();
+        let of_time = self.on().lagrangian(Dual { re: t, eps: [1.0] }, &fixed(q), &fixed(v)).eps[0];
+        let of_forces: f64 = self.on().force(t, q, v).iter().zip(v).map(|(force, v)| force * v).sum();
         of_forces - of_time
     }
 
     fn misses(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; 2] {
-        [largest(&self.residual(t, q, v)), largest(&self.positions(t, q))]
+        [largest(&self.on().residual(t, q, v)), largest(&self.on().positions(t, q))]
     }
 
     fn turn(&self, (t0, h): (f64, f64), q0: &[f64], v: &[f64]) -> f64 {
@@ -265,18 +214,18 @@ impl Element for TextElement {
         let increment: Vec<f64> = v.iter().map(|v| h * v).collect();
         dla::turn(&angles, &increment, || {
             let along: Vec<_> = q0.iter().zip(&increment).map(|(q, dq)| Dual { re: *q, eps: [*dq] }).collect();
-            let constraint = self.constraint(Dual { re: t0, eps: [h] }, &along);
-            constraint[..n * self.m()].chunks_exact(n).map(<[_]>::to_vec).collect::<Vec<_>>()
+            let constraint = self.on().constraint(Dual { re: t0, eps: [h] }, &along);
+            constraint[..n * self.model.constraints()].chunks_exact(n).map(<[_]>::to_vec).collect::<Vec<_>>()
         })
     }
 
     fn power_sources(&self) -> PowerSources {
         let state = vec![Traced::STATE; self.n()];
-        let constraint = self.constraint(Traced::TIME, &state);
+        let constraint = self.on().constraint(Traced::TIME, &state);
         PowerSources {
-            time: self.lagrangian(Traced::TIME, &state, &state).of_time,
-            forces: !self.force(Traced::TIME, &state, &state).iter().all(Scalar::is_zero),
-            constraints: !constraint[self.n() * self.m()..].iter().all(Scalar::is_zero),
+            time: self.on().lagrangian(Traced::TIME, &state, &state).of_time,
+            forces: !self.on().force(Traced::TIME, &state, &state).iter().all(Scalar::is_zero),
+            constraints: !constraint[self.n() * self.model.constraints()..].iter().all(Scalar::is_zero),
         }
     }
 
@@ -285,30 +234,34 @@ impl Element for TextElement {
             return 0.0;
         }
         let (t, q) = (t0 + 0.5 * h, Self::middle(h, q0, v));
-        dla::damping(h, [v, v1], [&self.force(t, &q, v), &self.force(t, &q, v1)])
+        dla::damping(h, [v, v1], [&self.on().force(t, &q, v), &self.on().force(t, &q, v1)])
     }
 
     fn inertia(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 2] {
         let (t, q) = (t0 + 0.5 * h, Self::middle(h, q0, v));
-        dla::inertia([v, v1], [&self.momentum(t, &q, v), &self.momentum(t, &q, v1)])
+        dla::inertia([v, v1], [&self.on().momentum(t, &q, v), &self.on().momentum(t, &q, v1)])
     }
 
     #[cold]
     fn not_a_number(&self, t: f64, q: &[f64], v: &[f64]) -> Option<NotANumber> {
         let lost = |function, derivative| Some(NotANumber { function, derivative, time: t, at_node: true });
-        if let Some(function) =
-            self.first(&self.slopes(t, q, v), &self.force(t, q, v), &self.constraint(t, q), f64::is_finite)
-        {
+        if let Some(function) = self.first(
+            &self.on().slopes(t, q, v),
+            &self.on().force(t, q, v),
+            &self.on().constraint(t, q),
+            f64::is_finite,
+        ) {
             return lost(function, Derivative::Value);
         }
-        if let Some(g) = self.positions(t, q).iter().position(|g| !g.is_finite()) {
+        if let Some(g) = self.on().positions(t, q).iter().position(|g| !g.is_finite()) {
             return lost(SystemFunction::Position { row: self.model.velocities + g }, Derivative::Value);
         }
         let mut found = None;
         for (in_q, in_v) in [(0.0, 1.0), (1.0, 0.0)] {
             self.along_each([q, v], [in_q, in_v], |own, q, v| {
                 let t = Dual::fixed(t);
-                let (slopes, force, constraint) = (self.slopes(t, q, v), self.force(t, q, v), self.constraint(t, q));
+                let (slopes, force, constraint) =
+                    (self.on().slopes(t, q, v), self.on().force(t, q, v), self.on().constraint(t, q));
                 for (k, i) in own.enumerate() {
                     let variable = if in_v > 0.0 { Variable::Velocity(i) } else { Variable::Coordinate(i) };
                     let first = self.first(&slopes, &force, &constraint, |x: Seeded| x.eps[k].is_finite());
@@ -330,7 +283,7 @@ impl TextElement {
         is_right: impl Fn(S) -> bool,
     ) -> Option<SystemFunction> {
         let wrong = |all: &[S]| all.iter().position(|x| !is_right(*x));
-        let (n, all) = (self.n(), self.n() * self.m());
+        let (n, all) = (self.n(), self.n() * self.model.constraints());
         let of_force = || wrong(force).map(|coordinate| SystemFunction::Force { coordinate });
         let of_constraint = || {
             wrong(constraint).map(|k| match k.checked_sub(all) {

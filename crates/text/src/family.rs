@@ -1,3 +1,5 @@
+use crate::multipliers::multipliers_along;
+use crate::slices::TextSlices;
 use crate::tapes::TapePoint;
 use crate::{TextError, TextFunctions, TextModel, Words};
 use dla::{ParametrisedMechanics, ReducedSeries};
@@ -60,7 +62,12 @@ impl Family {
     #[must_use]
     pub fn told(&self, t: f64, q: &[Seeded], v: &[Seeded], p: &[Seeded; FREE]) -> Vec<Seeded> {
         let mut told = vec![Seeded::zero(); self.free.outputs.len()];
-        let at = TapePoint { t: Seeded::constant(t), q, v, p, sides: &[] };
+        let (t, mut all) = (Seeded::constant(t), p.to_vec());
+        if let Some(parameters) = self.free.before_multipliers {
+            all.truncate(parameters);
+            all.extend(multipliers_along(TextSlices { model: &self.free, sides: &[], p }, t, q, v));
+        }
+        let at = TapePoint { t, q, v, p: &all, sides: &[] };
         self.free.told.evaluate(self.free.coordinates.len(), at, |k, x| told[k] = x);
         told
     }

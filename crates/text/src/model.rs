@@ -1,5 +1,7 @@
 use crate::any::has_shape;
+use crate::multipliers::multipliers;
 use crate::reduced::EquationsOfBases;
+use crate::slices::TextSlices;
 use crate::tapes::{TapePoint, Tapes};
 use crate::{Entry, TextError, Unit, Words};
 use expression::formulas::{Formulas, Parameters, RowElimination};
@@ -41,8 +43,13 @@ pub struct TextModel {
     pub(crate) slopes: Tapes,
     /// The mass matrix `L_vv` by rows, then `L_v`.
     pub(crate) mass: Tapes,
+    /// The names of the multipliers.
+    pub(crate) rows: Vec<String>,
     pub(crate) outputs: Vec<String>,
+    pub(crate) output_units: Vec<String>,
     pub(crate) told: Tapes,
+    /// How many free parameters there are before the multipliers in the variables of the outputs; `None` if these have no multipliers.
+    pub(crate) before_multipliers: Option<usize>,
     pub(crate) timed: bool,
     pub(crate) formulas: Arc<Formulas>,
     /// How a basis that holds everywhere is derived; `None` if the text gives one, or none is found.
@@ -104,6 +111,7 @@ impl TextModel {
         let derived = eliminations.as_ref().map(|all| formulas.basis_by(all).concat());
         let basis = formulas.basis.clone().or(derived);
         let given = formulas.clone();
+        let before_multipliers = formulas.multipliers.map(|first| first as usize - 1 - 2 * words.coordinates.len());
         let Formulas { mut graph, lagrangian, rows, level, positions, force, outputs, .. } = formulas;
         let momentum = graph.gradient(lagrangian, &all);
         let mass: Vec<Expression> = [graph.hessian(lagrangian, &all, &all).concat(), momentum.clone()].concat();
@@ -134,8 +142,13 @@ impl TextModel {
             momentum: tapes(&momentum, Entry::Lagrangian)?,
             slopes: tapes(&slopes, Entry::Lagrangian)?,
             mass: tapes(&mass, Entry::Lagrangian)?,
+            rows: (0..words.constraints.len() + words.positions.len()).map(|k| words.multiplier(k)).collect(),
             outputs: words.outputs.iter().map(|(name, _)| name.clone()).collect(),
+            output_units: (0..words.outputs.len())
+                .map(|k| words.output_units.get(k).cloned().unwrap_or_default())
+                .collect(),
             told: tapes(&outputs, Entry::System)?,
+            before_multipliers,
             timed,
             formulas: Arc::new(given),
             eliminations,
@@ -180,10 +193,22 @@ impl TextModel {
         !has_shape(self.coordinates.len(), self.constraints())
     }
 
+    /// The names of the multipliers of the constraints, those on velocities first: `lambda1`, .., or `lambda_NAME` of a constraint with a name.
+    #[must_use]
+    pub fn multiplier_names(&self) -> &[String] {
+        &self.rows
+    }
+
     /// The names of the outputs.
     #[must_use]
     pub fn outputs(&self) -> &[String] {
         &self.outputs
+    }
+
+    /// The units of the outputs; empty for an output without a unit.
+    #[must_use]
+    pub fn output_units(&self) -> &[String] {
+        &self.output_units
     }
 
     /// Whether forces act.
@@ -215,7 +240,7 @@ impl TextModel {
     #[must_use]
     pub fn told(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut told = vec![0.0; self.outputs.len()];
-        self.told.evaluate(self.coordinates.len(), TapePoint::new(t, q, v), |k, x| told[k] = x);
+        self.tell(t, q, v, |k, x| told[k] = x);
         told
     }
 
@@ -223,12 +248,24 @@ impl TextModel {
     #[must_use]
     pub fn output(&self, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
         let mut told = (k < self.outputs.len()).then_some(0.0)?;
-        self.told.evaluate(self.coordinates.len(), TapePoint::new(t, q, v), |i, x| {
+        self.tell(t, q, v, |i, x| {
             if i == k {
                 told = x;
             }
         });
         Some(told)
+    }
+
+    fn tell(&self, t: f64, q: &[f64], v: &[f64], see: impl FnMut(usize, f64)) {
+        let p = if self.before_multipliers.is_some() { self.multipliers(t, q, v) } else { Vec::new() };
+        self.told.evaluate(self.coordinates.len(), TapePoint { p: &p, ..TapePoint::new(t, q, v) }, see);
+    }
+
+    /// The multipliers `lambda` of the constraints at a state, those on velocities first: `A' lambda` are the generalised forces of the
+    /// constraints. Of constraints that depend on one another they are the shortest; NaN where the equations are not finite.
+    #[must_use]
+    pub fn multipliers(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+        multipliers(TextSlices::of(self, &[]), t, q, v)
     }
 
     /// The energy `v . L_v - L` (J).

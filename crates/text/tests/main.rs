@@ -13,4 +13,5 @@
 mod copies;
 mod family;
 mod models;
+mod multipliers;
 mod words;

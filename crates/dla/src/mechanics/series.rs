@@ -76,7 +76,19 @@ fn derived<Sys: System<N, M>, const N: usize, const M: usize>(
     let (traced, graph) = trace(Graph::with_limit(LARGEST), model);
     let (lagrangian, rows, level, force, basis) = traced??;
     let (positions, outputs) = (Vec::new(), Vec::new());
-    let mut formulas = Formulas { n: N, m: M, graph, lagrangian, rows, level, positions, force, basis: None, outputs };
+    let mut formulas = Formulas {
+        n: N,
+        m: M,
+        graph,
+        lagrangian,
+        rows,
+        level,
+        positions,
+        force,
+        basis: None,
+        outputs,
+        multipliers: None,
+    };
     let reduced = formulas.reduced_in(basis.chunks(N).map(<[_]>::to_vec).collect()).ok_or(TOO_LARGE)?;
     Ok(([&reduced.velocity[..], &reduced.acceleration].concat(), formulas.graph))
 }

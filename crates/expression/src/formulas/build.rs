@@ -26,14 +26,19 @@ impl Formulas {
         let (positions, rates) = positions(&mut tables, words)?;
         let force = forces(&mut tables, words)?;
         let basis = basis(&mut tables, words, n - m)?;
+        let free = if parameters == Parameters::Variables { words.parameters.len() } else { 0 };
+        let first = (1 + 2 * n + free) as u32;
+        multipliers(&mut tables, words, m, first)?;
         let outputs = outputs(&mut tables, words)?;
+        let has_multiplier = outputs.iter().any(|&e| tables.graph.variables(e).last().is_some_and(|k| *k >= first));
+        let multipliers = has_multiplier.then_some(first);
         let rows: Vec<Expression> = velocities.into_iter().chain(rates.iter().flat_map(|(a, _)| a.clone())).collect();
         if let Some(i) = undetermined(&tables, &rows, &massless) {
             let rate = format!("{}'", words.coordinates[i].0);
             return Err(of(Entry::Lagrangian, Problem::NoInertia { rate }));
         }
         let level = rest.into_iter().chain(rates.iter().map(|(_, b)| *b)).collect();
-        Ok(Self { n, m, graph: tables.graph, lagrangian, rows, level, positions, force, basis, outputs })
+        Ok(Self { n, m, graph: tables.graph, lagrangian, rows, level, positions, force, basis, outputs, multipliers })
     }
 }
 
@@ -228,6 +233,23 @@ fn basis(tables: &mut Tables, words: &Words, dimension: usize) -> Result<Option<
     Ok(Some(components))
 }
 
+/// Names for the multipliers of the rows, in outputs. A name that the system has keeps its meaning.
+fn multipliers(tables: &mut Tables, words: &Words, rows: usize, first: u32) -> Result<(), TextError> {
+    for k in 0..rows {
+        let meaning = tables.graph.variable(first + k as u32);
+        let entry = match k.checked_sub(words.constraints.len()) {
+            None => Entry::Constraint(k),
+            Some(position) => Entry::Position(position),
+        };
+        // A name that is given must be free.
+        let (name, given) = (words.multiplier(k), words.rows.get(k).is_some_and(|name| !name.is_empty()));
+        if given || !tables.is_known(&name) {
+            tables.add_told(&name, meaning, entry)?;
+        }
+    }
+    Ok(())
+}
+
 fn outputs(tables: &mut Tables, words: &Words) -> Result<Vec<Expression>, TextError> {
     let mut taken: HashSet<String> = COLUMNS.map(str::to_owned).into();
     taken.extend(words.coordinates.iter().flat_map(|(name, _)| [name.clone(), format!("{name}'")]));
@@ -240,6 +262,9 @@ fn outputs(tables: &mut Tables, words: &Words) -> Result<Vec<Expression>, TextEr
         if name.is_empty() || name.starts_with(['=', '+', '-', '@']) || name.contains([',', '"']) || !fits_a_line(name)
         {
             return Err(of(entry, Problem::NotAColumn { name: name.clone() }));
+        }
+        if let Some(unit) = words.output_units.get(k).filter(|unit| !fits_a_line(unit)) {
+            return Err(of(entry, Problem::NotAColumn { name: unit.clone() }));
         }
         outputs.push(tables.build(text, May::Jump, entry)?);
     }

@@ -63,15 +63,29 @@ pub struct Words {
     pub constraints: Vec<String>,
     /// Constraints on positions, without rates: equations, or formulas that vanish.
     pub positions: Vec<String>,
+    /// The names of the constraints, those on velocities first; empty for a constraint without a name. May be shorter than the constraints.
+    pub rows: Vec<String>,
     /// Generalised forces, by the name of the coordinate on which they act.
     pub forces: Vec<(String, String)>,
     /// A basis of the admissible velocities: for each vector a formula for each coordinate. If empty, a basis is derived.
     pub basis: Vec<Vec<String>>,
-    /// Further quantities to output: names with their formulas.
+    /// Further quantities to output: names with their formulas, which may contain the multipliers `lambda1`, `lambda2`, .. of the constraints,
+    /// in place of the number the name of a constraint that has one, as `lambda_wheel`.
     pub outputs: Vec<(String, String)>,
+    /// The units of the outputs; empty for an output without a unit. May be shorter than the outputs.
+    pub output_units: Vec<String>,
 }
 
 impl Words {
+    /// The name of the multiplier of a constraint, those on velocities first: `lambda1`, .., or `lambda_NAME` of a constraint with a name.
+    #[must_use]
+    pub fn multiplier(&self, row: usize) -> String {
+        match self.rows.get(row).filter(|name| !name.is_empty()) {
+            Some(name) => format!("lambda_{name}"),
+            None => format!("lambda{}", row + 1),
+        }
+    }
+
     /// All texts that are formulas.
     pub(crate) fn formulas(&self) -> impl Iterator<Item = &str> {
         let named = [&self.abbreviations, &self.forces, &self.outputs].into_iter().flatten().map(|(_, text)| text);
@@ -114,6 +128,8 @@ pub struct Formulas {
     pub basis: Option<Vec<Expression>>,
     /// The further outputs.
     pub outputs: Vec<Expression>,
+    /// The variable of the first multiplier, if outputs contain multipliers: those of the other rows follow.
+    pub multipliers: Option<u32>,
 }
 
 impl Formulas {

@@ -75,6 +75,16 @@ impl Tables {
         Ok(())
     }
 
+    /// Adds a name that outputs alone may use, once all other texts are read.
+    pub(crate) fn add_told(&mut self, name: &str, meaning: Expression, entry: Entry) -> Result<(), TextError> {
+        self.jumping.add(name, meaning).map_err(|error| TextError { entry, problem: error.into() })
+    }
+
+    /// Whether a name has a meaning.
+    pub(crate) fn is_known(&self, name: &str) -> bool {
+        self.jumping.names.position(name).is_some()
+    }
+
     /// The rate of a function of time and coordinates along the motion.
     pub(crate) fn rate_along(&mut self, formula: Expression) -> Expression {
         let mut rate = self.graph.derivative(formula, 0);

@@ -93,7 +93,7 @@ def _check(expression: Any) -> None:
             return
         raise RequestError(f"{expression}: accepted are first derivatives of coordinates by the time")
     if isinstance(expression, sp.Equality):
-        raise RequestError(f"{expression}: write an equation as its left side minus its right side")
+        raise RequestError(f"{expression}: an equation is a constraint or a position; all else are expressions")
     if isinstance(expression, (sp.Function, sp.Max, sp.Min, sp.Abs)):
         called = expression.func.__name__
         if called not in KNOWN | set(RENAMED):

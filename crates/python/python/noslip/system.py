@@ -21,9 +21,11 @@ class System(Scene):
 
     `coordinates` are names with their units (`"angle"` is in rad, and every formula is the same a turn further; `"rad"` counts
     turns), or a list of names or of SymPy's `dynamicsymbols`.
-    `lagrangian`, `constraints` (each is zero, and affine in the rates), `forces` (by coordinate), `positions` (functions that
-    are zero), `basis` (admissible velocities, lists of a text for each coordinate) and `outputs` (further columns, by name) are
-    texts as in scene files, where `x'` is the rate of `x`, or SymPy expressions. `parameters` are numbers by name.
+    `lagrangian`, `constraints` (equations, or what is zero, affine in the rates), `forces` (by coordinate), `positions` (the same of
+    coordinates and time), `basis` (admissible velocities, lists of a text for each coordinate) and `outputs` (further columns, by
+    name: a text, or a pair of a text and its unit) are texts as in scene files, where `x'` is the rate of `x`, or SymPy expressions.
+    Constraints may have names, as a mapping: outputs may contain the force `lambda_NAME` of a constraint, `lambda1`, .. without names.
+    `parameters` are numbers by name.
 
     `q` and `v` are the start, by name or in order. Rates that are left out, and those that violate a constraint, are the nearest
     admissible ones.
@@ -33,11 +35,11 @@ class System(Scene):
         self,
         coordinates: Mapping[Any, str] | Iterable[Any],
         lagrangian: Any,
-        constraints: Iterable[Any] = (),
+        constraints: Mapping[str, Any] | Iterable[Any] = (),
         *,
         parameters: Mapping[Any, float] | None = None,
         forces: Mapping[Any, Any] | None = None,
-        positions: Iterable[Any] = (),
+        positions: Mapping[str, Any] | Iterable[Any] = (),
         basis: Iterable[Iterable[Any]] = (),
         outputs: Mapping[str, Any] | None = None,
         q: Values = None,
@@ -48,23 +50,28 @@ class System(Scene):
         title: str | None = None,
     ) -> None:
         units = coordinates if isinstance(coordinates, Mapping) else dict.fromkeys(coordinates, "1")
-        constraints, positions, basis = list(constraints), list(positions), [list(vector) for vector in basis]
-        forces, outputs, parameters = forces or {}, outputs or {}, parameters or {}
-        rows = (entry for vector in basis for entry in vector)
-        texts = [lagrangian, *constraints, *positions, *rows, *forces.values(), *outputs.values()]
+        (rows, further), (places, left) = _rows(constraints), _rows(positions)
+        basis, forces, parameters = [list(vector) for vector in basis], forces or {}, parameters or {}
+        told = {key: output if isinstance(output, tuple) else (output, "") for key, output in (outputs or {}).items()}
+        entries = (entry for vector in basis for entry in vector)
+        formulas = (formula for formula, _ in told.values())
+        texts = [lagrangian, *further, *left, *entries, *forces.values(), *formulas]
         refuse_twins([*units, *parameters, *forces, *texts])
         self.coordinates = [name(coordinate) for coordinate in units]
         system: dict[str, Any] = {
             "coordinates": dict(zip(self.coordinates, units.values(), strict=True)),
             "parameters": {name(key): float(value) for key, value in parameters.items()},
             "lagrangian": text(lagrangian),
-            "constraints": [text(row) for row in constraints],
+            "constraints": rows,
         }
         optional = {
             "forces": {name(key): text(force) for key, force in forces.items()},
-            "positions": [text(position) for position in positions],
+            "positions": places,
             "basis": [[text(entry) for entry in vector] for vector in basis],
-            "outputs": {key: text(output) for key, output in outputs.items()},
+            "outputs": {
+                key: {"formula": text(formula), "unit": unit} if unit else text(formula)
+                for key, (formula, unit) in told.items()
+            },
         }
         system.update({key: value for key, value in optional.items() if value})
         self._tables: dict[str, Any] = {
@@ -117,6 +124,19 @@ class System(Scene):
         if q is None and v is None:
             return super().run(**settings)
         return Scene.run(self.started(q, v), **settings)
+
+
+def _rows(given: Mapping[str, Any] | Iterable[Any]) -> tuple[Any, list[Any]]:
+    """Constraints as a scene has them, by their names if they have names, and what they are made of."""
+    if isinstance(given, Mapping):
+        return {key: _vanishing(row) for key, row in given.items()}, list(given.values())
+    made = list(given)
+    return [_vanishing(row) for row in made], made
+
+
+def _vanishing(row: Any) -> str:
+    """The text of what vanishes; of an equation of SymPy its left side less its right one."""
+    return text(row.lhs - row.rhs if type(row).__name__ == "Equality" else row)
 
 
 def _named(coordinates: list[str], values: Values, suffix: str) -> dict[str, float]:

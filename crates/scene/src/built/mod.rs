@@ -115,7 +115,10 @@ impl<'a> Built<'a> {
     pub fn quantities(&self) -> Vec<Quantity> {
         let mut quantities = match self {
             Self::Sleigh(system) => sleigh::quantities(*system),
-            Self::Text(system) => text::quantities(system.model()),
+            Self::Text(system) => {
+                let model = system.model();
+                text::quantities(model).into_iter().chain(text::multipliers(model)).collect()
+            }
         };
         if self.train().is_some() {
             // The quantities of a train are those of its first blade.

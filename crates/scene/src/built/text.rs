@@ -16,7 +16,8 @@ pub fn quantities(model: &TextModel) -> Vec<Quantity> {
         unit => format!("{unit}/s"),
     };
     let rate = |c: &Coordinate| of(format!("{}'", c.name), rate_unit(c), false);
-    let outputs = model.outputs().iter().map(|name| of(name.clone(), String::new(), false));
+    let outputs = model.outputs().iter().zip(model.output_units());
+    let outputs = outputs.map(|(name, unit)| of(name.clone(), unit.clone(), false));
     coordinates.iter().map(place).chain(coordinates.iter().map(rate)).chain(outputs).collect()
 }
 
@@ -24,13 +25,22 @@ pub(super) fn in_state(model: &TextModel) -> usize {
     2 * model.coordinates().len() + model.outputs().len()
 }
 
-/// The value of quantity `k`: coordinates, then rates, then outputs; `None` beyond these.
+/// The multipliers of the constraints, which tell no state.
+pub(super) fn multipliers(model: &TextModel) -> impl Iterator<Item = Quantity> {
+    model.multiplier_names().iter().map(|name| Quantity { name: name.clone(), unit: String::new(), angle: false })
+}
+
+/// The value of quantity `k`: coordinates, then rates, outputs and multipliers; `None` beyond these.
 pub(super) fn value(model: &TextModel, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
     let n = model.coordinates().len();
     match k.checked_sub(n) {
         None => q.get(k).copied(),
         Some(k) if k < n => v.get(k).copied(),
-        Some(k) => model.output(k - n, t, q.get(..n)?, v.get(..n)?),
+        Some(k) => {
+            let (k, q, v) = (k - n, q.get(..n)?, v.get(..n)?);
+            let multiplier = k.checked_sub(model.outputs().len());
+            multiplier.map_or_else(|| model.output(k, t, q, v), |k| model.multipliers(t, q, v).get(k).copied())
+        }
     }
 }
 

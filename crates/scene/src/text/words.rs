@@ -44,8 +44,10 @@ pub(crate) fn read(root: &TomlTable<'_>) -> Result<(Words, TextPlaces), SceneErr
     };
     words.lagrangian = text(&system, "system.lagrangian", lagrangian, FORMULA)?;
     places.add(Entry::Lagrangian, "system.lagrangian".to_owned(), lagrangian.span());
-    words.constraints = list(&system, &mut places, "constraints", Entry::Constraint)?;
-    words.positions = list(&system, &mut places, "positions", Entry::Position)?;
+    (words.rows, words.constraints) = rows(&system, &mut places, "constraints", Entry::Constraint)?;
+    let (names, positions) = rows(&system, &mut places, "positions", Entry::Position)?;
+    words.positions = positions;
+    words.rows.extend(names);
     let accepted = "a table of formulas by the names of coordinates, as { theta = \"-0.1*theta'\" }";
     words.forces = named(&system, &mut places, "forces", accepted, Entry::Force)?;
     if let Some(value) = system.get("basis") {
@@ -62,8 +64,7 @@ pub(crate) fn read(root: &TomlTable<'_>) -> Result<(Words, TextPlaces), SceneErr
             words.basis.push(components);
         }
     }
-    let accepted = "a table of formulas, as { speed = \"x'*cos(theta) + y'*sin(theta)\" }";
-    words.outputs = named(&system, &mut places, "outputs", accepted, Entry::Output)?;
+    outputs(&system, &mut places, &mut words)?;
     Ok((words, places))
 }
 
@@ -92,21 +93,45 @@ fn array<'s>(
     }
 }
 
-/// A list of formulas.
-fn list(
+/// The outputs: formulas, or tables of a formula and its unit.
+fn outputs(system: &TomlTable<'_>, places: &mut TextPlaces, words: &mut Words) -> Result<(), SceneError> {
+    const TABLE: &str = "a table of formulas, as { speed = \"x'*cos(theta) + y'*sin(theta)\" }";
+    const ACCEPTED: &str = "a formula in quotes, or { formula = \"..\", unit = \"m/s\" }";
+    for (k, (name, field, value)) in entries(system, "outputs", TABLE)?.unwrap_or_default().into_iter().enumerate() {
+        places.add(Entry::Output(k), field.clone(), value.span());
+        let (formula, unit) = match value.get_ref() {
+            DeValue::Table(table) => {
+                let output = system.inner(field, table, value.span(), &["formula", "unit"])?;
+                let formula = output.text("formula", FORMULA)?;
+                let formula = formula.ok_or_else(|| output.missing("formula", FORMULA.to_owned()))?;
+                let unit = output.text("unit", "a unit in quotes")?.unwrap_or_default();
+                (formula.to_owned(), unit.to_owned())
+            }
+            _ => (text(system, &field, value, ACCEPTED)?, String::new()),
+        };
+        words.outputs.push((name, formula));
+        words.output_units.push(unit);
+    }
+    Ok(())
+}
+
+/// The names and the formulas of constraints: a list of formulas, or a table of formulas by their names.
+fn rows(
     system: &TomlTable<'_>,
     places: &mut TextPlaces,
     key: &'static str,
     entry: fn(usize) -> Entry,
-) -> Result<Vec<String>, SceneError> {
-    let Some(value) = system.get(key) else { return Ok(Vec::new()) };
-    let formulas = array(system, key, value, "a list of formulas in quotes")?.iter().enumerate();
-    formulas
-        .map(|(k, formula)| {
-            places.add(entry(k), format!("system.{key}"), formula.span());
-            text(system, key, formula, FORMULA)
-        })
-        .collect()
+) -> Result<(Vec<String>, Vec<String>), SceneError> {
+    const ACCEPTED: &str = "a list of formulas in quotes, or a table of formulas by names";
+    let Some(value) = system.get(key) else { return Ok((Vec::new(), Vec::new())) };
+    if matches!(value.get_ref(), DeValue::Table(_)) {
+        return Ok(named(system, places, key, ACCEPTED, entry)?.into_iter().unzip());
+    }
+    let formulas = array(system, key, value, ACCEPTED)?.iter().enumerate().map(|(k, formula)| {
+        places.add(entry(k), format!("system.{key}"), formula.span());
+        Ok((String::new(), text(system, key, formula, FORMULA)?))
+    });
+    Ok(formulas.collect::<Result<Vec<_>, SceneError>>()?.into_iter().unzip())
 }
 
 /// The entries of a table in the order of the text, with their paths.

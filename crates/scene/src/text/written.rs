@@ -1,5 +1,5 @@
 use super::{AnyScene, TextScene};
-use ::text::Unit;
+use ::text::{Unit, Words};
 use serde::{Serialize, Serializer};
 
 /// A scene of a system of text as its file has it: plain values before the tables.
@@ -14,10 +14,10 @@ struct WrittenTextFile<'s> {
 #[derive(Serialize)]
 struct WrittenSystem<'s> {
     lagrangian: &'s str,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    constraints: &'s [String],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    positions: &'s [String],
+    #[serde(skip_serializing_if = "WrittenRows::is_empty")]
+    constraints: WrittenRows<'s>,
+    #[serde(skip_serializing_if = "WrittenRows::is_empty")]
+    positions: WrittenRows<'s>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     basis: &'s [Vec<String>],
     coordinates: WrittenTable<'s, &'s str>,
@@ -25,7 +25,29 @@ struct WrittenSystem<'s> {
     #[serde(rename = "let")]
     abbreviations: WrittenTable<'s, &'s str>,
     forces: WrittenTable<'s, &'s str>,
-    outputs: WrittenTable<'s, &'s str>,
+    outputs: WrittenTable<'s, WrittenOutput<'s>>,
+}
+
+/// Constraints: a list, or a table if they have names.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum WrittenRows<'s> {
+    Listed(&'s [String]),
+    Named(WrittenTable<'s, &'s str>),
+}
+
+impl<'s> WrittenRows<'s> {
+    fn of(names: &'s [String], formulas: &'s [String]) -> Self {
+        if names.first().is_none_or(String::is_empty) {
+            return Self::Listed(formulas);
+        }
+        let named = names.iter().zip(formulas).map(|(name, formula)| (name.as_str(), formula.as_str()));
+        Self::Named(WrittenTable(named.collect()))
+    }
+
+    fn is_empty(&self) -> bool {
+        matches!(self, Self::Listed([]))
+    }
 }
 
 /// A table whose keys stay in their order.
@@ -39,6 +61,27 @@ impl<T: Serialize> Serialize for WrittenTable<'_, T> {
 
 fn formulas(pairs: &[(String, String)]) -> WrittenTable<'_, &str> {
     WrittenTable(pairs.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect())
+}
+
+/// A formula, with its unit if it has one.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum WrittenOutput<'s> {
+    Bare(&'s str),
+    InUnit { formula: &'s str, unit: &'s str },
+}
+
+fn outputs(words: &Words) -> WrittenTable<'_, WrittenOutput<'_>> {
+    // Tables would be written behind formulas, in another order.
+    let in_units = words.output_units.iter().any(|unit| !unit.is_empty());
+    let written = words.outputs.iter().enumerate().map(|(k, (name, formula))| {
+        let output = match words.output_units.get(k) {
+            Some(unit) if in_units => WrittenOutput::InUnit { formula, unit },
+            _ => WrittenOutput::Bare(formula),
+        };
+        (name.as_str(), output)
+    });
+    WrittenTable(written.collect())
 }
 
 fn unit(unit: &Unit) -> &str {
@@ -59,8 +102,11 @@ impl TextScene {
             title,
             system: WrittenSystem {
                 lagrangian: &words.lagrangian,
-                constraints: &words.constraints,
-                positions: &words.positions,
+                constraints: WrittenRows::of(&words.rows, &words.constraints),
+                positions: WrittenRows::of(
+                    words.rows.get(words.constraints.len()..).unwrap_or_default(),
+                    &words.positions,
+                ),
                 basis: &words.basis,
                 coordinates: WrittenTable(
                     words.coordinates.iter().map(|(name, of)| (name.as_str(), unit(of))).collect(),
@@ -70,7 +116,7 @@ impl TextScene {
                 ),
                 abbreviations: formulas(&words.abbreviations),
                 forces: formulas(&words.forces),
-                outputs: formulas(&words.outputs),
+                outputs: outputs(words),
             },
             start: WrittenTable(state.zip(start.q.iter().chain(&start.v).copied()).collect()),
             run,

@@ -213,6 +213,18 @@ fn what_is_wrong_is_wrong_to_both() {
 #[test]
 fn a_system_of_text_is_right_or_wrong_to_both() {
     check(TEXT, OF_TEXT);
+    let named = TEXT.replacen("[\"y'*c - x'*s\"]", "{ edge = \"y'*c = x'*s\" }", 1).replacen(
+        "{ speed = \"x'*c + y'*s\" }",
+        "{ speed = { formula = \"x'*c + y'*s\", unit = \"m/s\" } }",
+        1,
+    );
+    let mutants = [
+        ("edge = \"y'*c = x'*s\"", "edge = 1"),
+        ("unit = \"m/s\"", "unit = 1"),
+        ("formula = \"x'*c + y'*s\", ", ""),
+        ("unit = ", "units = "),
+    ];
+    check(&named, &mutants);
 }
 
 #[test]
