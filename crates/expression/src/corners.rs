@@ -5,7 +5,7 @@ use crate::interval::{Interval, sign};
 use crate::{Error, Expression, Function, Graph, Tape};
 use std::collections::HashMap;
 
-/// The times at which `abs`, `sign`, `min` and `max` of time turn from one side to the other, in some expressions.
+/// The times at which `abs`, `sign`, `min`, `max` and choices of time turn from one side to the other, in some expressions.
 ///
 /// Between two of them the expressions are smooth, and each such function has a side: the sign of its argument, or of `a - b` for
 /// `min(a, b)` and `max(a, b)`. [`Corners::of`] writes the expressions with variables for the sides, so that all pieces have the same
@@ -52,7 +52,7 @@ impl Corners {
         for call in graph.reached(expressions, |_| true) {
             let NodeKind::Call(function, [a, b]) = *graph.kind(call) else { continue };
             let argument = match function {
-                Function::Abs | Function::Sign => a,
+                Function::Abs | Function::Sign | Function::Where | Function::Unless => a,
                 Function::Min | Function::Max => graph.difference(a, b),
                 _ => continue,
             };
@@ -68,6 +68,7 @@ impl Corners {
             let piece = match function {
                 Function::Sign => side,
                 Function::Abs => graph.product(&[side, a]),
+                Function::Where | Function::Unless => graph.call(function, &[side, b]),
                 _ => {
                     let (sum, difference) = (graph.sum(&[a, b]), graph.difference(a, b));
                     let turned = graph.product(&[side, difference]);

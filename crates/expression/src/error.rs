@@ -20,6 +20,18 @@ pub enum Error {
         /// Where.
         column: usize,
     },
+    /// A comparison that is not the condition of an `if`.
+    #[error("a comparison is the condition of `if`, as in `if(x < 1, a, b)` (column {column})")]
+    Comparison {
+        /// Where.
+        column: usize,
+    },
+    /// An `if` whose condition is no comparison.
+    #[error("the condition of `if` is a comparison, as in `if(x < 1, a, b)`, and ends here (column {column})")]
+    Condition {
+        /// Where the condition ends.
+        column: usize,
+    },
     /// A number that is not written as one.
     #[error("`{found}` is not a number (column {column})")]
     Number {
@@ -183,6 +195,8 @@ impl Error {
         match *self {
             Self::Character { column, .. }
             | Self::Equation { column }
+            | Self::Comparison { column }
+            | Self::Condition { column }
             | Self::Number { column, .. }
             | Self::UnknownName { column, .. }
             | Self::NotAFunction { column, .. }

@@ -75,6 +75,10 @@ functions! {
     Sign "sign" 1 |a, _b| a.sign();
     /// Reciprocal, and 0 of zero: the derivative of a length, which counts as zero at length zero.
     Inverse "inverse" 1 |a, _b| a.abs().where_positive(a.recip(), a * 0.0);
+    /// The second where the first is positive, elsewhere zero.
+    Where "where_positive" 2 |a, b| a.where_positive(b, S::zero());
+    /// The second where the first is not positive, elsewhere zero.
+    Unless "where_not_positive" 2 |a, b| a.where_positive(S::zero(), b);
     /// The angle of the vector `(second, first)`.
     Atan2 "atan2" 2 |a, b| a.atan2(b);
     /// The smaller of two.

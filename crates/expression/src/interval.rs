@@ -152,6 +152,16 @@ impl Interval {
             Function::Abs => a.abs(),
             Function::Sign => Self::new(sign(a.least), sign(a.most)),
             Function::Inverse => a.power(-1.0),
+            Function::Where | Function::Unless => {
+                let chosen = if function == Function::Where { a.least > 0.0 } else { a.most <= 0.0 };
+                let left = if function == Function::Where { a.most <= 0.0 } else { a.least > 0.0 };
+                match (chosen, left) {
+                    (true, _) => b,
+                    (_, true) => Self::at(0.0),
+                    _ if b.least.is_nan() || b.most.is_nan() => Self::ALL,
+                    _ => Self::new(b.least.min(0.0), b.most.max(0.0)),
+                }
+            }
             // Where the angle does not jump, it is extreme at a corner.
             Function::Atan2 if !(a.has_zero() && b.least <= 0.0) => {
                 let all = [a.least, a.most].map(|y| [b.least, b.most].map(|x| y.atan2(x)));

@@ -52,6 +52,7 @@ pub mod formulas;
 mod function;
 mod graph;
 mod interval;
+mod named;
 mod names;
 mod parser;
 mod recurrences;

@@ -1,3 +1,4 @@
+use crate::named::{Callee, KNOWN};
 use crate::names::{PI, shortened};
 use crate::syntax::{Action, SyntaxStep};
 use crate::tokens::{Token, Tokens};
@@ -22,7 +23,8 @@ impl Default for Limits {
 
 /// Reads a text.
 ///
-/// Operators are `+ - * /`, `^` or `**`, which binds tighter than a sign before it and groups to the right, as in writing: `-x^2` is
+/// `hypot`, `min` and `max` take any number of arguments, `step(x)` is 0 below zero, 1 above and 1/2 at zero, and `if(x < y, a, b)` is `a`
+/// where the comparison holds, else `b`, with `<`, `<=`, `>` or `>=`. Operators are `+ - * /`, `^` or `**`, which binds tighter than a sign before it and groups to the right, as in writing: `-x^2` is
 /// `-(x^2)`, `2^-x^2` is `2^(-(x^2))`. Names are the names of the table, the [functions](Function) (`ln` is `log`), and `pi`.
 ///
 /// # Errors
@@ -65,7 +67,16 @@ fn read(text: &str, names: &Names, limits: &Limits, equation: bool) -> Result<Sy
 enum Open {
     Operation { column: usize, action: Action, binds: u8 },
     Group { column: usize },
-    Call { column: usize, at: usize, function: Function, commas: usize },
+    Call { column: usize, at: usize, callee: Callee, commas: usize, comparison: Option<Comparison> },
+}
+
+/// The condition of an `if`, as a difference that is positive.
+#[derive(Debug, Clone, Copy)]
+struct Comparison {
+    /// Whether the difference is the right side less the left one.
+    negated: bool,
+    /// Whether the condition holds where the difference is not positive.
+    turned: bool,
 }
 
 const EQUATION: u8 = 0;
@@ -121,25 +132,25 @@ impl Parser<'_> {
     }
 
     fn name(&mut self, column: usize, name: &str) -> Result<bool, Error> {
-        let function = if name == "ln" { Some(Function::Log) } else { Function::named(name) };
+        let callee = Callee::named(name);
         let position = self.names.position(name);
-        if function.is_none() && position.is_none() && name != PI && !self.tokens.opens() {
+        let reserved = if let Some(Callee::Function(function)) = callee { Some(function) } else { None };
+        if reserved.is_none() && position.is_none() && name != PI && !self.tokens.opens() {
             return Err(self.names.unknown(name, column));
         }
-        match (function, self.tokens.opens()) {
-            (Some(function), true) => {
+        match (callee, self.tokens.opens()) {
+            (Some(callee), true) => {
                 let (at, _) = self.tokens.next()?;
-                self.open(column, Open::Call { column, at, function, commas: 0 })?;
+                self.open(column, Open::Call { column, at, callee, commas: 0, comparison: None })?;
                 Ok(true)
             }
-            (Some(function), false) => Err(Error::NoArguments { column, name: function.name() }),
+            (Some(callee), false) if position.is_none() => Err(Error::NoArguments { column, name: callee.name() }),
             (None, true) => {
-                let functions = Function::ALL.map(Function::name);
-                let nearest = nearest(name, functions).map(str::to_owned);
-                let known = functions.map(str::to_owned).to_vec();
+                let nearest = nearest(name, KNOWN).map(str::to_owned);
+                let known = KNOWN.map(str::to_owned).to_vec();
                 Err(Error::NotAFunction { column, name: shortened(name), nearest, known })
             }
-            (None, false) => {
+            (_, false) => {
                 self.push(column, position.map_or(Action::Number(std::f64::consts::PI), Action::Name))?;
                 Ok(false)
             }
@@ -156,6 +167,8 @@ impl Parser<'_> {
             Token::Power => (Action::Power, POWER),
             Token::Close => return self.close(column),
             Token::Comma => return self.comma(column),
+            Token::Less { or_equal } => return self.compare(column, !or_equal, or_equal),
+            Token::Greater { or_equal } => return self.compare(column, or_equal, or_equal),
             Token::Equals => {
                 self.finish(EQUATION)?;
                 if !std::mem::take(&mut self.equation) || !self.open.is_empty() {
@@ -175,12 +188,8 @@ impl Parser<'_> {
         self.finish(0)?;
         match self.open.pop() {
             Some(Open::Group { .. }) => Ok(false),
-            Some(Open::Call { column, function, commas, .. }) => {
-                let (expected, found) = (function.arguments(), commas + 1);
-                if found != expected {
-                    return Err(Error::ArgumentCount { column, name: function.name(), expected, found });
-                }
-                self.push(column, Action::Call(function))?;
+            Some(Open::Call { column, callee, commas, comparison, .. }) => {
+                self.called(column, callee, commas + 1, comparison)?;
                 Ok(false)
             }
             _ => Err(Error::Unopened { column }),
@@ -189,13 +198,79 @@ impl Parser<'_> {
 
     fn comma(&mut self, column: usize) -> Result<bool, Error> {
         self.finish(0)?;
-        match self.open.last_mut() {
-            Some(Open::Call { commas, .. }) => {
-                *commas += 1;
-                Ok(true)
-            }
-            _ => Err(self.expected_operator(column, &Token::Comma)),
+        let Some(Open::Call { callee, commas, comparison, .. }) = self.open.last_mut() else {
+            return Err(self.expected_operator(column, &Token::Comma));
+        };
+        *commas += 1;
+        let (callee, commas, comparison) = (*callee, *commas, *comparison);
+        match callee {
+            Callee::Hypot => self.square(column)?,
+            Callee::If if commas == 1 => match comparison {
+                None => return Err(Error::Condition { column }),
+                Some(Comparison { negated: true, .. }) => self.push(column, Action::Negate)?,
+                Some(_) => {}
+            },
+            _ => {}
         }
+        Ok(true)
+    }
+
+    /// A comparison, in the condition of an `if`: the left side less the right one, to be `negated`, and to be positive or not (`turned`).
+    fn compare(&mut self, column: usize, negated: bool, turned: bool) -> Result<bool, Error> {
+        self.finish(0)?;
+        match self.open.last_mut() {
+            Some(Open::Call { callee: Callee::If, commas: 0, comparison: comparison @ None, .. }) => {
+                *comparison = Some(Comparison { negated, turned });
+            }
+            _ => return Err(Error::Comparison { column }),
+        }
+        self.open(column, Open::Operation { column, action: Action::Subtract, binds: EQUATION })?;
+        Ok(true)
+    }
+
+    fn square(&mut self, column: usize) -> Result<(), Error> {
+        self.push(column, Action::Number(2.0))?;
+        self.push(column, Action::Power)
+    }
+
+    /// The call of a function whose arguments are complete.
+    fn called(
+        &mut self,
+        column: usize,
+        callee: Callee,
+        found: usize,
+        comparison: Option<Comparison>,
+    ) -> Result<(), Error> {
+        let (least, most) = callee.arguments();
+        if found < least || found > most {
+            return Err(Error::ArgumentCount { column, name: callee.name(), expected: least, found });
+        }
+        match callee {
+            Callee::Function(function) => {
+                for _ in 0..(found - 1).max(1) {
+                    self.push(column, Action::Call(function))?;
+                }
+            }
+            Callee::Hypot => {
+                self.square(column)?;
+                for _ in 1..found {
+                    self.push(column, Action::Add)?;
+                }
+                self.push(column, Action::Call(Function::Sqrt))?;
+            }
+            Callee::Step => {
+                self.push(column, Action::Call(Function::Sign))?;
+                for (number, action) in [(1.0, Action::Add), (2.0, Action::Divide)] {
+                    self.push(column, Action::Number(number))?;
+                    self.push(column, action)?;
+                }
+            }
+            Callee::If => {
+                let turned = comparison.is_some_and(|comparison| comparison.turned);
+                self.push(column, Action::Choose { turned })?;
+            }
+        }
+        Ok(())
     }
 
     fn end(&mut self) -> Result<(), Error> {
@@ -212,7 +287,7 @@ impl Parser<'_> {
         let inner = self.open.iter().rev().find(|open| !matches!(open, Open::Operation { .. }));
         let expected = match inner {
             None => "the end of the text",
-            Some(Open::Call { function, .. }) if function.arguments() > 1 => "`,` or `)`",
+            Some(Open::Call { callee, .. }) if callee.arguments().1 > 1 => "`,` or `)`",
             Some(_) => "`)`",
         };
         Error::ExpectedOperator { column, found: found.shown(), expected }

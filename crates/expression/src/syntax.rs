@@ -30,6 +30,10 @@ pub(crate) enum Action {
     Divide,
     Power,
     Call(Function),
+    /// The second of three where the first is positive, else the third; the other way round if `turned`.
+    Choose {
+        turned: bool,
+    },
 }
 
 impl Action {
@@ -39,6 +43,7 @@ impl Action {
             Self::Number(_) | Self::Name(_) => 0,
             Self::Negate => 1,
             Self::Call(function) => function.arguments(),
+            Self::Choose { .. } => 3,
             _ => 2,
         }
     }
@@ -68,6 +73,14 @@ impl Syntax {
                     let value = *values.get(k).ok_or_else(|| too_few(k + 1, values.len()))?;
                     Operand { value, constant: None }
                 }
+                Action::Choose { turned } => {
+                    let lost = Operand { value: S::constant(f64::NAN), constant: None };
+                    let [otherwise, then, condition] = [(); 3].map(|()| stack.pop().unwrap_or(lost));
+                    let [then, otherwise] = if turned { [otherwise, then] } else { [then, otherwise] };
+                    let known = condition.constant.map(|x| if x > 0.0 { then.constant } else { otherwise.constant });
+                    let value = condition.value.where_positive(then.value, otherwise.value);
+                    Operand { value, constant: known.flatten() }
+                }
                 action => {
                     let b = if action.operands() == 2 { stack.pop() } else { None };
                     let a = stack.pop().unwrap_or(Operand { value: S::constant(f64::NAN), constant: None });
@@ -91,11 +104,16 @@ impl Syntax {
         names
     }
 
-    /// The column in which a function is first used.
+    /// The first function that jumps, `sign`, `step` or `if`: its column.
     #[must_use]
-    pub fn first_use(&self, function: Function) -> Option<usize> {
-        let here = |step: &&SyntaxStep| step.action == Action::Call(function);
-        self.steps.iter().filter(here).map(|step| step.column).min()
+    pub fn first_jump(&self) -> Option<usize> {
+        let jumps = |step: &&SyntaxStep| {
+            matches!(
+                step.action,
+                Action::Call(Function::Sign | Function::Where | Function::Unless) | Action::Choose { .. }
+            )
+        };
+        self.steps.iter().filter(jumps).map(|step| step.column).min()
     }
 }
 
@@ -105,7 +123,7 @@ pub(crate) fn too_few(expected: usize, found: usize) -> Error {
 
 fn applied<S: Scalar>(action: Action, a: S, b: S, constant: Option<f64>) -> S {
     match action {
-        Action::Number(_) | Action::Name(_) => a,
+        Action::Number(_) | Action::Name(_) | Action::Choose { .. } => a,
         Action::Negate => -a,
         Action::Add => a + b,
         Action::Subtract => a - b,

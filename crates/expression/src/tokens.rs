@@ -17,6 +17,8 @@ pub(crate) enum Token<'a> {
     Close,
     Comma,
     Equals,
+    Less { or_equal: bool },
+    Greater { or_equal: bool },
     End,
 }
 
@@ -35,6 +37,8 @@ impl Token<'_> {
             Self::Close => "`)`".to_owned(),
             Self::Comma => "`,`".to_owned(),
             Self::Equals => "`=`".to_owned(),
+            Self::Less { or_equal } => if *or_equal { "`<=`" } else { "`<`" }.to_owned(),
+            Self::Greater { or_equal } => if *or_equal { "`>=`" } else { "`>`" }.to_owned(),
             Self::End => "the end of the text".to_owned(),
         }
     }
@@ -78,6 +82,8 @@ impl<'a> Tokens<'a> {
             ')' => Token::Close,
             ',' => Token::Comma,
             '=' => Token::Equals,
+            '<' => Token::Less { or_equal: self.step_if(|c| c == '=') },
+            '>' => Token::Greater { or_equal: self.step_if(|c| c == '=') },
             found => return Err(Error::Character { column, found }),
         };
         Ok((column, token))

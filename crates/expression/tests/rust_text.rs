@@ -6,7 +6,8 @@ use lagrangian::{Dual, Scalar};
 
 const SOURCE: &str =
     "mass/2*(x'^2 + y^2)*sin(x + y) - cos(x + y)*exp(-x^2)/sqrt(1 + y^2) - atan2(x, y)*max(x, 2) + x^19
-    - (-tanh(y) - 1)*(1 - x) + abs(x - 3)^0.3 + log(2 + tan(x*y)^2)*sign(y) - 3*x'/(x - 1.5*y)^2 + min(-x, y)/mass";
+    - (-tanh(y) - 1)*(1 - x) + abs(x - 3)^0.3 + log(2 + tan(x*y)^2)*sign(y) - 3*x'/(x - 1.5*y)^2 + min(-x, y)/mass
+    + if(x < mass - 0.5, log(mass - x), x*y)*step(y) + hypot(x, y, 2)*if(mass >= 1, 3, sqrt(mass))";
 
 fn function() -> (Graph, Vec<Expression>) {
     let mut graph = Graph::new();

@@ -1,7 +1,7 @@
 //! What is simplified, derived and put on a tape against the text evaluated as it was written.
 
 use crate::common::{NAMES, agree, built, expression, names, off_corners, read, text, values, variables};
-use expression::{Error, Function, Graph, Tape, parse};
+use expression::{Error, Graph, Tape, parse};
 use lagrangian::{Dual, Rounded, Scalar};
 use num_dual::HyperDual64;
 use proptest::prelude::*;
@@ -203,7 +203,38 @@ fn substitution() {
     assert_eq!(replaced, built(&mut graph, "sin(x' + 1)^2*y + 2^x' + sqrt((x' + 1)*y)"));
     assert_eq!(graph.variables(replaced), [1, 2]);
     assert_eq!(graph.variables(e), [0, 1, 2, 3]);
-    assert_eq!(read("sin(x) + tanh(y) - sign(x')").first_use(Function::Sign), Some(20));
-    assert_eq!(read("sin(y)").first_use(Function::Cos), None);
+    for (text, column) in [("sin(x) + tanh(y) - sign(x')", 20), ("1 + step(x)", 5), ("x*if(x < y, 1, 2)", 3)] {
+        assert_eq!(read(text).first_jump(), Some(column), "{text}");
+    }
+    assert_eq!(read("min(abs(x), max(y, hypot(x, y), 2))").first_jump(), None);
     assert_eq!(read("y + x' + y").names(), [1, 2]);
+}
+
+/// A choice has the value and the derivatives of what is chosen, also where the other has none.
+#[test]
+fn choices() {
+    for (source, at, value, slope) in [
+        ("if(x < 0, 2*x, x^2)", -3.0, -6.0, 2.0),
+        ("if(x < 0, 2*x, x^2)", 3.0, 9.0, 6.0),
+        ("if(x < 0, log(-x), sqrt(x))", 4.0, 2.0, 0.25),
+        ("if(x < 0, log(-x), sqrt(x))", -1.0, 0.0, -1.0),
+        ("if(x > 0, 1/x, 5)", 0.0, 5.0, 0.0),
+        ("if(x >= 0, 1 + 3*x, 5)", 0.0, 1.0, 3.0),
+        ("if(0 <= x, 1 + 3*x, 5)", 0.0, 1.0, 3.0),
+        ("if(x <= 0, 1 + 3*x, 5)", 0.0, 1.0, 3.0),
+        ("step(x)*x", 2.0, 2.0, 1.0),
+        ("step(x) + 0*x", 0.0, 0.5, 0.0),
+        ("hypot(x, 4)", 3.0, 5.0, 0.6),
+        ("hypot(x, 2*x, 2*x)", 0.0, 0.0, 0.0),
+        ("max(x, 2*x, 3*x)", 1.0, 3.0, 3.0),
+    ] {
+        let mut graph = Graph::new();
+        let e = built(&mut graph, source);
+        let slopes = graph.derivative(e, 0);
+        let tape = Tape::new(&graph, &[e, slopes]).unwrap();
+        assert_eq!(evaluated(&tape, &[at, 0.0, 0.0, 0.0]), [value, slope], "{source} at {at}");
+        assert_eq!(read(source).evaluate(&[at, 0.0, 0.0, 0.0]).unwrap(), value, "{source} at {at}");
+        let again = parse(&text(&graph, e), &names()).unwrap().evaluate(&[at, 0.0, 0.0, 0.0]).unwrap();
+        assert_eq!(again, value, "{source} at {at}");
+    }
 }

@@ -65,7 +65,7 @@ impl TextError {
     pub fn column(&self) -> Option<usize> {
         match &self.problem {
             Problem::Expression(error) => error.column(),
-            Problem::Sign { column } | Problem::RateOf { column, .. } => Some(*column),
+            Problem::Jump { column } | Problem::RateOf { column, .. } => Some(*column),
             _ => None,
         }
     }
@@ -78,8 +78,11 @@ pub enum Problem {
     #[error(transparent)]
     Expression(#[from] crate::Error),
     /// A function that jumps stands where derivatives are taken.
-    #[error("`sign` jumps, and is accepted only in forces, in outputs and in abbreviations for them (column {column})")]
-    Sign {
+    #[error(
+        "`sign`, `step` and `if` jump, and are accepted only in forces, in outputs and in abbreviations for them (column {column}); \
+        `max(0, x)^2` begins at zero without a jump"
+    )]
+    Jump {
         /// Where.
         column: usize,
     },

@@ -1,5 +1,5 @@
 use super::{Entry, Problem, TextError};
-use crate::{Error, Expression, Function, Graph, Names, Syntax, parse, parse_equation};
+use crate::{Error, Expression, Graph, Names, Syntax, parse, parse_equation};
 use std::collections::HashMap;
 
 /// Names that texts of one kind may use, with their meanings.
@@ -120,8 +120,8 @@ impl Tables {
             May::Jump => &self.jumping,
         };
         let syntax = read(text, &table.names).map_err(|error| fail(self.named(error)))?;
-        if let Some(column) = syntax.first_use(Function::Sign).filter(|_| may != May::Jump) {
-            return Err(fail(Problem::Sign { column }));
+        if let Some(column) = syntax.first_jump().filter(|_| may != May::Jump) {
+            return Err(fail(Problem::Jump { column }));
         }
         self.graph.build(&syntax, &table.meanings).map_err(|error| fail(error.into()))
     }
@@ -142,9 +142,7 @@ impl Tables {
     pub(crate) fn abbreviation(&mut self, text: &str, entry: Entry) -> Result<(Expression, May), TextError> {
         let formula = self.build(text, May::Jump, entry)?;
         // The same text is parsed again where less may be said: names that stand for jumps are not known there.
-        let smooth = parse(text, &self.moving.names)
-            .ok()
-            .is_some_and(|syntax: Syntax| syntax.first_use(Function::Sign).is_none());
+        let smooth = parse(text, &self.moving.names).ok().is_some_and(|syntax: Syntax| syntax.first_jump().is_none());
         let moves = self.graph.variables(formula).into_iter().any(|k| k > self.n as u32 && k <= 2 * self.n as u32);
         Ok((
             formula,

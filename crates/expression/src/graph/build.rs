@@ -38,6 +38,17 @@ impl Graph {
                     let meaning = meanings.get(k).ok_or_else(|| too_few(k + 1, meanings.len()))?;
                     BuiltOperand::Done(*meaning)
                 }
+                Action::Choose { turned } => {
+                    let mut parts = [self.constant(f64::NAN); 3];
+                    for part in parts.iter_mut().rev() {
+                        if let Some(operand) = stack.pop() {
+                            *part = self.done(operand)?;
+                        }
+                    }
+                    let [condition, then, otherwise] = parts;
+                    let [then, otherwise] = if turned { [otherwise, then] } else { [then, otherwise] };
+                    BuiltOperand::Done(self.chosen(condition, then, otherwise))
+                }
                 action => {
                     let last = if action.operands() == 2 { stack.pop() } else { None };
                     match stack.pop() {

@@ -10,6 +10,14 @@ impl Graph {
             return self.constant(function.of(a, b));
         }
         match function {
+            Function::Where | Function::Unless => {
+                match self.value(first).map(|x| (x > 0.0) == (function == Function::Where)) {
+                    Some(true) => last,
+                    Some(false) => self.constant(0.0),
+                    None if self.value(last) == Some(0.0) => last,
+                    None => self.called(function, [first, last]),
+                }
+            }
             Function::Sqrt => self.power(first, 0.5),
             // Even and odd functions.
             Function::Cos | Function::Cosh | Function::Abs => {
@@ -43,6 +51,16 @@ impl Graph {
             Function::Min | Function::Max => self.called(function, [first.min(last), first.max(last)]),
             Function::Acos | Function::Atan2 => self.called(function, [first, last]),
         }
+    }
+
+    /// `then` where the condition is positive, elsewhere `otherwise`; the one that is not chosen may have no value there.
+    pub fn chosen(&mut self, condition: Expression, then: Expression, otherwise: Expression) -> Expression {
+        if then == otherwise {
+            return then;
+        }
+        let then = self.call(Function::Where, &[condition, then]);
+        let otherwise = self.call(Function::Unless, &[condition, otherwise]);
+        self.sum(&[then, otherwise])
     }
 
     fn called(&mut self, function: Function, arguments: [Expression; 2]) -> Expression {

@@ -7,7 +7,7 @@ impl Graph {
     /// The derivative in a variable.
     ///
     /// The derivatives of `abs`, `min` and `max` are written with `sign`, at a corner as the mean of the two sides; the derivative of
-    /// `sign` is zero. A length (the root of a sum of squares) and an angle of `atan2` have the derivative zero at a zero vector, by
+    /// `sign` is zero, and that of a choice the derivative of what is chosen. A length (the root of a sum of squares) and an angle of `atan2` have the derivative zero at a zero vector, by
     /// `inverse`. A positive power of an expression with corners, as `max(0, x)^1.5`, has the derivative zero where its base is zero.
     /// Elsewhere the rules of differentiation hold: at a zero of another root the derivative is infinite or NaN.
     ///
@@ -114,6 +114,10 @@ impl Graph {
                     if function == Function::Max { self.sum(&[mean, turned]) } else { self.difference(mean, turned) };
                 self.scaled(twice, 0.5)
             }
+            NodeKind::Call(function @ (Function::Where | Function::Unless), [condition, chosen]) => {
+                let inner = self.known(chosen, variable);
+                self.call(function, &[condition, inner])
+            }
             NodeKind::Call(function, [u, _]) => {
                 let (slope, inner) = (self.slope(function, u, e), self.known(u, variable));
                 self.product(&[slope, inner])
@@ -162,7 +166,9 @@ impl Graph {
                 let square = self.power(f, 2.0);
                 self.negated(square)
             }
-            Function::Sign | Function::Atan2 | Function::Min | Function::Max => self.constant(0.0),
+            Function::Sign | Function::Where | Function::Unless | Function::Atan2 | Function::Min | Function::Max => {
+                self.constant(0.0)
+            }
         }
     }
 }

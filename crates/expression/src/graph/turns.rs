@@ -173,7 +173,15 @@ impl Graph {
                         Changed
                     }
                 }
-                (Function::Sin | Function::Cos | Function::Tan | Function::Atan2, ..) => Open,
+                (
+                    Function::Sin
+                    | Function::Cos
+                    | Function::Tan
+                    | Function::Atan2
+                    | Function::Where
+                    | Function::Unless,
+                    ..,
+                ) => Open,
                 (Function::Min | Function::Max, By(first), By(last)) => {
                     if first == last {
                         By(first)

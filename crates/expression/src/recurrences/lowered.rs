@@ -194,6 +194,7 @@ impl Lowered {
                 self.push(to, Kind::Sum { a: first, b: second, beta: 1.0 });
             }
             Function::Abs | Function::Sign => self.choice(to, function, [a, a], a),
+            Function::Where | Function::Unless => self.choice(to, function, [b, b], a),
             Function::Min | Function::Max => {
                 let argument = self.made(Kind::Sum { a, b, beta: -1.0 });
                 self.choice(to, function, [a, b], argument);

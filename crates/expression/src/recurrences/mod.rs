@@ -96,7 +96,7 @@ enum Kind {
     Root { a: u32, flat: bool },
     /// The function of `a` that begins with `start` and has the slope `beta b`.
     Integral { a: u32, b: u32, beta: f64, start: Start },
-    /// The absolute value or the sign of `a`, or the smaller or larger of `a` and `b`, by the side of a corner.
+    /// The absolute value or the sign of `a`, the smaller or larger of `a` and `b`, or `a` or zero, by the side of a corner.
     Choice { a: u32, b: u32, corner: u32 },
 }
 
@@ -146,10 +146,11 @@ impl Recurrences {
         self.sudden
     }
 
-    /// Whether a function jumps at a corner, as `sign` does.
+    /// Whether a function may jump at a corner, as `sign` does.
     #[must_use]
     pub fn jumps(&self, corner: usize) -> bool {
-        self.corners.get(corner).is_some_and(|corner| corner.function == Function::Sign)
+        let jumps = |corner: &Corner| matches!(corner.function, Function::Sign | Function::Where | Function::Unless);
+        self.corners.get(corner).is_some_and(jumps)
     }
 
     /// How many corners there are: functions such as `abs`, smooth on each side.

@@ -73,6 +73,10 @@ impl<S: Scalar> Expansion<S> {
                     match function {
                         Function::Abs => (side * value(a), [side, S::zero(), one, one]),
                         Function::Sign => (side, [S::zero(), S::zero(), one, one]),
+                        Function::Where | Function::Unless => {
+                            let chosen = function.of(side, one);
+                            (function.of(side, value(a)), [chosen, S::zero(), one, one])
+                        }
                         function => {
                             // Of equal numbers the mean.
                             let of_a = if function == Function::Max { side } else { -side };

@@ -19,7 +19,7 @@ pub struct Cost {
     pub angles: usize,
     /// Exponentials, logarithms and hyperbolic functions.
     pub exponentials: usize,
-    /// `abs`, `sign`, `min`, `max`.
+    /// `abs`, `sign`, `min`, `max`, and choices.
     pub choices: usize,
 }
 
@@ -60,7 +60,12 @@ impl Tape {
                     Function::Exp | Function::Log | Function::Sinh | Function::Cosh | Function::Tanh => {
                         &mut cost.exponentials
                     }
-                    Function::Abs | Function::Sign | Function::Min | Function::Max => &mut cost.choices,
+                    Function::Abs
+                    | Function::Sign
+                    | Function::Where
+                    | Function::Unless
+                    | Function::Min
+                    | Function::Max => &mut cost.choices,
                     _ => &mut cost.angles,
                 },
             };

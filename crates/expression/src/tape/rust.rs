@@ -219,6 +219,12 @@ fn written(operation: Operation, places: &[RustPiece], constants: &[f64]) -> Rus
                 return method(a, &format!("{name}()"));
             }
             let b = of(b);
+            if matches!(function, Function::Where | Function::Unless) {
+                let (zero, chosen) = ("S::zero()".to_owned(), b.scalar(RustLevel::Sum));
+                let both = if function == Function::Where { [chosen, zero] } else { [zero, chosen] };
+                let call = format!("{}.where_positive({})", a.scalar(RustLevel::Word), both.join(", "));
+                return piece(call, RustLevel::Word, false);
+            }
             if a.number && b.number {
                 // Of two constants and numbers the first may be a literal, which has no methods.
                 let call = format!("Scalar::{name}({}, {})", a.at(RustLevel::Sum), b.at(RustLevel::Sum));

@@ -78,6 +78,14 @@ pub fn expression() -> impl Strategy<Value = String> {
             "((A^2 + 1)^(x/2))",
             "(2^sin(A))",
             "(sin(A)^2 + cos(A)^2)",
+            "hypot(A, 2)",
+            "hypot(x, y, 1, 0.5)",
+            "min(x, A, 2)",
+            "step(x)*(A)",
+            "if(x < 0, A, y)",
+            "if(y >= x - 0.1, sin(A), mass*A)",
+            "if(0 <= x', sqrt(x'), A)",
+            "if(x > 5, log(-1 - x^2), A)",
         ]);
         prop_oneof![
             3 => pair.clone().prop_map(|(a, b)| format!("({a} + {b})")),

@@ -99,7 +99,6 @@ fn length(problem: &Problem) -> usize {
             expression::Error::UnknownName { name, .. } | expression::Error::NotAFunction { name, .. },
         ) => name.chars().count(),
         Problem::RateOf { name, .. } => name.chars().count() + 1,
-        Problem::Sign { .. } => "sign".len(),
         _ => 1,
     }
 }
