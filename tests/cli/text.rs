@@ -13,6 +13,8 @@ mod paper;
 
 mod reactions;
 
+mod tables;
+
 mod trains;
 
 use crate::program::{Folder, TEXTS, csv, keys};

@@ -5,6 +5,7 @@ use crate::points;
 use crate::quantity::KeyQuantity;
 use crate::table::{TomlTable, as_f64};
 use sleigh::{Formula, Ramp, SleighError, Table, TimeFunction};
+use std::fmt::Write as _;
 use toml::de::DeValue;
 
 const FREQUENCY: KeyQuantity = KeyQuantity::finite("frequency", "rad/s");
@@ -46,16 +47,60 @@ impl TomlTable<'_> {
                 phase: table.number(&PHASE)?.unwrap_or(0.0),
             }));
         }
-        let linear = table.is_linear()?;
-        let (times, values) = match form[0] {
-            "file" => table.points_of_file(quantity)?,
-            _ => (table.listed(&TIMES)?, table.listed(&quantity.named("values"))?),
+        table.points(form[0], quantity, &accepted(quantity)).map(Some)
+    }
+
+    /// A function of time by the points of this table, in the form that begins with the key `form`.
+    fn points(&self, form: &'static str, quantity: &KeyQuantity, accepted: &str) -> Result<TimeFunction, SceneError> {
+        let linear = self.is_linear()?;
+        let (times, values) = match form {
+            "file" => self.points_of_file(quantity)?,
+            _ => (self.listed(&TIMES)?, self.listed(&quantity.named("values"))?),
         };
         let function = match linear {
             true => Ramp::new(times, values).map(TimeFunction::Ramp),
             false => Table::new(times, values).map(TimeFunction::Table),
         };
-        function.map(Some).map_err(|error| table.wrong(form[0], &error.to_string(), accepted(quantity)))
+        function.map_err(|error| self.wrong(form, &error.to_string(), accepted.to_owned()))
+    }
+
+    /// The formula in `t` of the points of this table, for a system of text: ramps as sums of `max(0, t - ..)`, steps as sums of `step(t - ..)`.
+    pub(crate) fn formula_of_points(&self) -> Result<String, SceneError> {
+        /// A formula is evaluated as a whole.
+        const MOST: usize = 1000;
+        let form = if self.get("file").is_some() { "file" } else { "times" };
+        let values = KeyQuantity::finite("values", "the unit of the formulas that use it");
+        let accepted =
+            format!("`{{times, values, interpolation}}` or `{{file, columns, interpolation}}`, at most {MOST} points");
+        let function = self.points(form, &values, &accepted)?;
+        let (times, values) = match &function {
+            TimeFunction::Ramp(ramp) => (ramp.times(), ramp.values()),
+            TimeFunction::Table(table) => (table.times(), table.values()),
+            _ => (&[][..], &[][..]),
+        };
+        if times.len() > MOST {
+            return Err(self.wrong(form, &format!("has {} points", times.len()), accepted));
+        }
+        let mut formula = format!("{:?}", values.first().copied().unwrap_or(0.0));
+        let mut add = |change: f64, part: &str, time: f64| {
+            if change != 0.0 {
+                let _ = write!(formula, " + {change:?}*{part}t - {time:?})");
+            }
+        };
+        if matches!(function, TimeFunction::Ramp(_)) {
+            let mut before = 0.0;
+            for (t, v) in times.windows(2).zip(values.windows(2)) {
+                let slope = (v[1] - v[0]) / (t[1] - t[0]);
+                add(slope - before, "max(0, ", t[0]);
+                before = slope;
+            }
+            add(-before, "max(0, ", times.last().copied().unwrap_or(0.0));
+        } else {
+            for (time, v) in times.iter().skip(1).zip(values.windows(2)) {
+                add(v[1] - v[0], "step(", *time);
+            }
+        }
+        Ok(formula)
     }
 
     /// A function of time.

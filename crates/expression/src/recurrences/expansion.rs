@@ -174,11 +174,12 @@ impl<S: Scalar> Expansion<S> {
     #[inline(always)]
     fn combine(&mut self, of: &Recurrences) {
         let (mut first, mut at) = (0, 0);
-        for &Run { terms, end } in &of.runs {
+        for &Run { terms, picks, end } in &of.runs {
             let results = &of.results[first..end];
             let last = at + terms * results.len();
             let (places, factors) = (&of.terms[at..last], &self.factors[at..last]);
             match terms {
+                1 if picks => picked(&mut self.present, results, places, factors),
                 1 => combined::<S, 1>(&mut self.present, results, places, factors),
                 2 => combined::<S, 2>(&mut self.present, results, places, factors),
                 3 => combined::<S, 3>(&mut self.present, results, places, factors),
@@ -204,6 +205,14 @@ impl<S: Scalar> Expansion<S> {
             self.arguments[k * corners + at] = present[corner.argument as usize];
         }
         self.leaves |= self.vanishing.iter().any(|place| !present[*place as usize].is_zero());
+    }
+}
+
+/// Coefficients that are picked, or zero.
+#[cold]
+fn picked<S: Scalar>(present: &mut [S], results: &[u32], places: &[u32], factors: &[S]) {
+    for ((result, place), factor) in results.iter().zip(places).zip(factors) {
+        present[*result as usize] = factor.where_positive(present[*place as usize], S::zero());
     }
 }
 

@@ -77,9 +77,13 @@ impl Lowered {
         self.integral(cos, Start::Call(Function::Cos, a), a, (-1.0, sin));
     }
 
-    fn choice(&mut self, to: u32, function: Function, [a, b]: [u32; 2], argument: u32) {
-        let corner = self.corners.len() as u32;
+    fn corner(&mut self, function: Function, argument: u32) -> u32 {
         self.corners.push(Corner { argument, function });
+        self.corners.len() as u32 - 1
+    }
+
+    fn choice(&mut self, to: u32, function: Function, [a, b]: [u32; 2], argument: u32) {
+        let corner = self.corner(function, argument);
         self.push(to, Kind::Choice { a, b, corner });
     }
 
@@ -194,7 +198,10 @@ impl Lowered {
                 self.push(to, Kind::Sum { a: first, b: second, beta: 1.0 });
             }
             Function::Abs | Function::Sign => self.choice(to, function, [a, a], a),
-            Function::Where | Function::Unless => self.choice(to, function, [b, b], a),
+            Function::Where | Function::Unless => {
+                let corner = self.corner(function, a);
+                self.push(to, Kind::Pick { a: b, corner });
+            }
             Function::Min | Function::Max => {
                 let argument = self.made(Kind::Sum { a, b, beta: -1.0 });
                 self.choice(to, function, [a, b], argument);

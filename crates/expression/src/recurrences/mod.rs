@@ -59,10 +59,11 @@ pub struct Recurrences {
 /// Sums over products that are computed side by side.
 const WIDE: usize = 8;
 
-/// Operations with the same number of terms.
+/// Operations with the same number of terms, or that pick their term.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Run {
     terms: usize,
+    picks: bool,
     end: usize,
 }
 
@@ -96,8 +97,10 @@ enum Kind {
     Root { a: u32, flat: bool },
     /// The function of `a` that begins with `start` and has the slope `beta b`.
     Integral { a: u32, b: u32, beta: f64, start: Start },
-    /// The absolute value or the sign of `a`, the smaller or larger of `a` and `b`, or `a` or zero, by the side of a corner.
+    /// The absolute value or the sign of `a`, or the smaller or larger of `a` and `b`, by the side of a corner.
     Choice { a: u32, b: u32, corner: u32 },
+    /// `a` or zero, by the side of a corner. Where zero is chosen, `a` may have no value.
+    Pick { a: u32, corner: u32 },
 }
 
 /// The value of an integral at order 0.

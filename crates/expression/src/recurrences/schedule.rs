@@ -13,6 +13,7 @@ impl Kind {
                 ([a; 3], 1)
             }
             Self::Inverse { b, .. } => ([b; 3], 1),
+            Self::Pick { a, .. } => ([a; 3], 1),
             Self::Sum { a, b, .. }
             | Self::Product { a, b }
             | Self::Quotient { a, b, .. }
@@ -30,7 +31,7 @@ impl Kind {
             Self::Quotient { b, .. } | Self::Inverse { b, .. } => sorted(b, to),
             Self::Root { .. } => sorted(to, to),
             Self::Integral { a, b, .. } => Some(([a, b], true)),
-            Self::Scaled { .. } | Self::Sum { .. } | Self::Choice { .. } => None,
+            Self::Scaled { .. } | Self::Sum { .. } | Self::Choice { .. } | Self::Pick { .. } => None,
         }
     }
 
@@ -55,9 +56,10 @@ impl Lowered {
                 terms.push(self.places + of_operation[k] as u32);
             }
             operations.push(self.operations[k]);
+            let picks = matches!(self.operations[k].kind, Kind::Pick { .. });
             match runs.last_mut() {
-                Some(run) if run.terms == of_kind => run.end += 1,
-                _ => runs.push(Run { terms: of_kind, end: operations.len() }),
+                Some(run) if run.terms == of_kind && run.picks == picks => run.end += 1,
+                _ => runs.push(Run { terms: of_kind, picks, end: operations.len() }),
             }
         }
         Recurrences {
@@ -137,7 +139,7 @@ impl Lowered {
         let mut all = operands[..n].to_vec();
         match kind {
             Kind::Integral { start: Start::Call(_, second), .. } => all.push(second),
-            Kind::Choice { corner, .. } => all.push(self.corners[corner as usize].argument),
+            Kind::Choice { corner, .. } | Kind::Pick { corner, .. } => all.push(self.corners[corner as usize].argument),
             _ => {}
         }
         all

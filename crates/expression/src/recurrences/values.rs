@@ -1,5 +1,5 @@
 use super::expansion::{Expansion, MOST_TERMS};
-use super::{Corner, Kind, Recurrences, SeriesOperation, Start};
+use super::{Kind, Recurrences, SeriesOperation, Start};
 use crate::Function;
 use scalar::Scalar;
 
@@ -9,6 +9,10 @@ impl<S: Scalar> Expansion<S> {
         let (mut at, one) = (0, S::constant(1.0));
         // Sine and cosine of one argument are computed together.
         let mut circle: Option<(u32, (S, S))> = None;
+        let side = |corner: u32, value: &dyn Fn(u32) -> S| {
+            let given = sides.get(corner as usize).copied().unwrap_or(S::zero());
+            given.squared().where_positive(given, value(of.corners[corner as usize].argument).sign())
+        };
         for &SeriesOperation { to, terms, kind } in &of.operations {
             let value = |place: u32| self.values[place as usize];
             let inverse =
@@ -66,17 +70,17 @@ impl<S: Scalar> Expansion<S> {
                     // The value of the slope may follow.
                     (x, [value(b), S::constant(beta), one, one])
                 }
+                Kind::Pick { a, corner } => {
+                    let side = side(corner, &value);
+                    let function = of.corners[corner as usize].function;
+                    (function.of(side, value(a)), [function.of(side, one), one, one, one])
+                }
                 Kind::Choice { a, b, corner } => {
-                    let Corner { argument, function } = of.corners[corner as usize];
-                    let given = sides.get(corner as usize).copied().unwrap_or(S::zero());
-                    let side = given.squared().where_positive(given, value(argument).sign());
+                    let side = side(corner, &value);
+                    let function = of.corners[corner as usize].function;
                     match function {
                         Function::Abs => (side * value(a), [side, S::zero(), one, one]),
                         Function::Sign => (side, [S::zero(), S::zero(), one, one]),
-                        Function::Where | Function::Unless => {
-                            let chosen = function.of(side, one);
-                            (function.of(side, value(a)), [chosen, S::zero(), one, one])
-                        }
                         function => {
                             // Of equal numbers the mean.
                             let of_a = if function == Function::Max { side } else { -side };

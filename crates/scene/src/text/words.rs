@@ -7,8 +7,18 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The keys of `[system]`.
-const KEYS: &[&str] =
-    &["coordinates", "parameters", "let", "lagrangian", "constraints", "positions", "forces", "basis", "outputs"];
+const KEYS: &[&str] = &[
+    "coordinates",
+    "parameters",
+    "tables",
+    "let",
+    "lagrangian",
+    "constraints",
+    "positions",
+    "forces",
+    "basis",
+    "outputs",
+];
 
 type Value<'s> = Spanned<DeValue<'s>>;
 
@@ -37,8 +47,20 @@ pub(crate) fn read(root: &TomlTable<'_>) -> Result<(Words, TextPlaces), SceneErr
         places.add(Entry::Parameter(k), field, value.span());
         words.parameters.push((name, number));
     }
+    let accepted =
+        "a table of tables, as { push = { times = [0.0, 1.0], values = [0.0, 2.0], interpolation = \"linear\" } }";
+    for (k, (name, field, value)) in entries(&system, "tables", accepted)?.unwrap_or_default().into_iter().enumerate() {
+        let DeValue::Table(points) = value.get_ref() else {
+            return Err(system.wrong_type(bare(&field), value, accepted.to_owned()));
+        };
+        let keys = &["times", "values", "file", "columns", "interpolation"];
+        let formula = system.inner(field.clone(), points, value.span(), keys)?.formula_of_points()?;
+        places.add(Entry::Abbreviation(k), field, value.span());
+        words.abbreviations.push((name, formula));
+    }
     let accepted = "a table of formulas, as { c = \"cos(theta)\" }";
-    words.abbreviations = named(&system, &mut places, "let", accepted, Entry::Abbreviation)?;
+    let tables = words.abbreviations.len();
+    words.abbreviations.extend(named(&system, &mut places, "let", accepted, |k| Entry::Abbreviation(tables + k))?);
     let Some(lagrangian) = system.get("lagrangian") else {
         return Err(system.missing("lagrangian", FORMULA.to_owned()));
     };
@@ -160,7 +182,7 @@ fn named(
     places: &mut TextPlaces,
     key: &'static str,
     accepted: &str,
-    entry: fn(usize) -> Entry,
+    entry: impl Fn(usize) -> Entry,
 ) -> Result<Vec<(String, String)>, SceneError> {
     let mut formulas = Vec::new();
     for (k, (name, field, value)) in entries(system, key, accepted)?.unwrap_or_default().into_iter().enumerate() {

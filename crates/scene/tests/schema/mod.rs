@@ -134,6 +134,7 @@ const TEXT: &str = "title = \"A skate\"
 [system]
 coordinates = { x = \"m\", y = \"m\", theta = \"angle\" }
 parameters = { m = 1.0, J = 2 }
+tables = { push = { times = [0.0, 1.0], values = [1.0, 2.0], interpolation = \"linear\" } }
 let = { c = \"cos(theta)\", s = \"sin(theta)\" }
 lagrangian = \"m/2*(x'^2 + y'^2) + J/2*theta'^2\"
 constraints = [\"y'*c - x'*s\"]
@@ -154,6 +155,9 @@ const OF_TEXT: &[(&str, &str)] = &[
     ("x = \"m\"", "x = 1"),
     ("m = 1.0", "m = \"1\""),
     ("let", "lets"),
+    (", values = [1.0, 2.0]", ""),
+    ("\"linear\"", "\"cubic\""),
+    ("{ times = [0.0, 1.0], values = [1.0, 2.0], interpolation = \"linear\" }", "1.0"),
     ("lagrangian = \"m/2*(x'^2 + y'^2) + J/2*theta'^2\"\n", ""),
     ("[\"y'*c - x'*s\"]", "\"y'*c - x'*s\""),
     ("theta = \"-0.1*theta'\"", "theta = -0.1"),
