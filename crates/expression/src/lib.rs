@@ -44,7 +44,7 @@
 //! # What a text may say
 //! Numbers (`1`, `.5`, `1.5e-3`), names (letters of any alphabet, digits, `_`; with a prime for a rate, `x'`, or `x_dot`), `+ - * /`, powers
 //! with `^` or `**`, parentheses, `pi`, and the [functions](Function): `sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign
-//! inverse min max`. A power with an exponent that is no constant is `exp(b log(a))`, and so no number where the base is negative.
+//! inverse min max`, `hypot`, `step(x)` (0 below zero, 1 above) and `if(x < 1, a, b)`. A power with an exponent that is no constant is `exp(b log(a))`, and so no number where the base is negative.
 
 mod corners;
 mod error;

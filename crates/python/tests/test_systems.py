@@ -266,3 +266,14 @@ def test_constraints_have_names_forces_and_equations() -> None:
     np.testing.assert_allclose(run["other"], 1.0, rtol=1e-12)
     listed = noslip.System(["x", "y"], "(x'^2 + y'^2)/2", ["x' = y'"], outputs={"pull": "lambda1"}, v=[1.0, 1.0])
     assert (listed.run(duration=0.1)["pull"] == 0.0).all()
+
+
+def test_pieces_are_choices() -> None:
+    x = dynamicsymbols("x")
+    push = sp.Piecewise((1, t < sp.Rational(1, 2)), (2 * t, t <= 1), (0, True)) + sp.Heaviside(t - 2)
+    system = noslip.System([x], x.diff(t) ** 2 / 2, forces={x: push}, duration=3.0, step=0.7, method="gauss8")
+    np.testing.assert_allclose(system.run()["x'"][-1], 0.5 + 0.75 + 1.0, rtol=1e-14)
+    with pytest.raises(noslip.RequestError, match="for all other cases"):
+        noslip.System([x], x.diff(t) ** 2 / 2, forces={x: sp.Piecewise((1, t < 1))})
+    with pytest.raises(noslip.RequestError, match="conditions are comparisons"):
+        noslip.System([x], x.diff(t) ** 2 / 2, forces={x: sp.Piecewise((1, (t > 1) & (x > 0)), (0, True))})

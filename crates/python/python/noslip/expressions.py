@@ -92,6 +92,20 @@ def _check(expression: Any) -> None:
         if isinstance(function, AppliedUndef) and len(variables) == 1 and variables[0][1] == 1:
             return
         raise RequestError(f"{expression}: accepted are first derivatives of coordinates by the time")
+    if isinstance(expression, sp.Piecewise):
+        *branches, (last, condition) = expression.args
+        if condition != sp.true:
+            raise RequestError(f"{expression}: the last piece is the one for all other cases, `(value, True)`")
+        for value, condition in branches:
+            if not isinstance(condition, (sp.StrictLessThan, sp.LessThan, sp.StrictGreaterThan, sp.GreaterThan)):
+                raise RequestError(f"{expression}: conditions are comparisons, such as x < 1")
+            for part in (value, *condition.args):
+                _check(part)
+        _check(last)
+        return
+    if isinstance(expression, sp.Heaviside):
+        _check(expression.args[0])
+        return
     if isinstance(expression, sp.Equality):
         raise RequestError(f"{expression}: an equation is a constraint or a position; all else are expressions")
     if isinstance(expression, (sp.Function, sp.Max, sp.Min, sp.Abs)):
@@ -125,6 +139,17 @@ def _printer() -> Any:
             return f"{RENAMED.get(called, called)}({arguments})"
 
         _print_Abs = _print_Max = _print_Min = _print_Function
+
+        def _print_Piecewise(self, expression: Any) -> str:
+            *branches, (last, _) = expression.args
+            chosen = self.doprint(last)
+            for value, condition in reversed(branches):
+                left, right = (self.doprint(side) for side in condition.args)
+                chosen = f"if({left} {condition.rel_op} {right}, {self.doprint(value)}, {chosen})"
+            return chosen
+
+        def _print_Heaviside(self, expression: Any) -> str:
+            return f"step({self.doprint(expression.args[0])})"
 
         def _print_Symbol(self, expression: Any) -> str:
             return name(expression)
