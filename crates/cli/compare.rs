@@ -55,7 +55,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         let object = json::comparison(scene.name(), &rows, comparison.interrupted.is_some());
         terminal::print_json(&object)?;
     } else {
-        comparison.print(&scene)?;
+        terminal::print(&comparison.table(&scene, arguments.wide))?;
         if let Some(folder) = &arguments.report {
             terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
         }
@@ -147,9 +147,9 @@ pub(crate) fn compare_scene(
 }
 
 impl Comparison {
-    /// Prints its table.
-    pub(crate) fn print(&self, scene: &AnyScene) -> Result<(), CliError> {
-        terminal::print(&table::comparison(scene, &self.rows, self.interrupted.as_deref(), terminal::width()))
+    /// Its table; all columns if it may be `wide`.
+    pub(crate) fn table(&self, scene: &AnyScene, wide: bool) -> String {
+        table::comparison(scene, &self.rows, self.interrupted.as_deref(), wide)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{effect_keys, stability, table, terminal};
 use clap::CommandFactory;
 use clap_complete::Shell;
 use harness::METHODS;
-use scene::{AnyScene, Scene};
+use scene::{AnyScene, Scene, TextScene};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
@@ -66,10 +66,11 @@ fn scenes() -> Result<Vec<(&'static str, String)>, CliError> {
 
 /// `noslip new`: a scene to start from; `-` is standard output.
 pub(crate) fn new(arguments: &NewArguments) -> Result<(), CliError> {
+    let template = if arguments.system { TextScene::template() } else { Scene::template() };
     if arguments.file == Path::new("-") {
-        return terminal::print(Scene::template());
+        return terminal::print(template);
     }
-    write_whole(&arguments.file, arguments.force, |file| file.write_all(Scene::template().as_bytes()))?;
+    write_whole(&arguments.file, arguments.force, |file| file.write_all(template.as_bytes()))?;
     terminal::print(&format!("written: {}\n", arguments.file.display()))
 }
 

@@ -1,6 +1,5 @@
 //! Verdicts on constraint and energy from rows of `compare --json`, and the totals of each method over all scenes.
 
-use crate::table;
 use serde_json::Value;
 
 /// The course of the energy error; its size in J, and its slope in J/s.
@@ -69,7 +68,7 @@ pub(crate) struct Totals(Vec<Total>);
 #[derive(Debug, Default)]
 struct Total {
     method: String,
-    made: u32,
+    made: bool,
     refused: u32,
     failed: u32,
     slips: u32,
@@ -80,8 +79,9 @@ struct Total {
     seconds: f64,
 }
 
-const COLUMNS: [&str; 9] =
-    ["method", "runs", "refused", "failed", "slips in", "at most [m/s]", "drifts in", "not clear in", "time [s]"];
+/// The columns of the totals: in how many scenes a method refuses, fails, slips (at most so far), drifts, or is not clear; and its time.
+pub(crate) const COLUMNS: [&str; 8] =
+    ["method", "refused", "failed", "slips", "at most", "drifts", "not clear", "time [s]"];
 
 impl Totals {
     /// Counts a row of `compare --json`.
@@ -99,7 +99,7 @@ impl Totals {
             total.failed += 1;
         } else {
             let energy = Energy::of(row);
-            total.made += 1;
+            total.made = true;
             total.slips += u32::from(slips(row));
             total.slip = row["constraint"]["max"].as_f64().map_or(f64::NAN, |slip| slip.max(total.slip));
             total.drifts += u32::from(matches!(energy, Energy::Drifts(_)));
@@ -108,15 +108,14 @@ impl Totals {
         }
     }
 
-    /// One line a method.
-    pub(crate) fn table(&self, scenes: usize) -> String {
+    /// The rows of the [`COLUMNS`], one for each method.
+    pub(crate) fn rows(&self) -> Vec<Vec<String>> {
         let cells = |total: &Total| {
-            let counts = [total.made, total.refused, total.failed, total.slips].map(|count| count.to_string());
-            let slip = if total.made == 0 { "-".to_owned() } else { format!("{:.1e}", total.slip) };
+            let counts = [total.refused, total.failed, total.slips].map(|count| count.to_string());
+            let slip = if total.made { format!("{:.1e}", total.slip) } else { "-".to_owned() };
             let rest = [slip, total.drifts.to_string(), total.open.to_string(), format!("{:.1e}", total.seconds)];
             [vec![total.method.clone()], counts.to_vec(), rest.to_vec()].concat()
         };
-        let rows: Vec<Vec<String>> = self.0.iter().map(cells).collect();
-        format!("All {scenes} scenes together\n{}", table::right_aligned(&COLUMNS, &rows))
+        self.0.iter().map(cells).collect()
     }
 }

@@ -26,13 +26,18 @@ const CELLS: [(&str, Cell); 14] = [
     ("verdict", |record, _| record.verdict().map_or_else(|| "-".to_owned(), |verdict| verdict.to_string())),
     ("end error", |_, error| short(error)),
     ("Newton", |Record { newton, .. }, _| if newton.max == 0 { "-".to_owned() } else { format!("{:.2}", newton.mean) }),
-    ("ns/step", |record, _| format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64)),
+    ("ns/step", |record, _| nanoseconds(record.wall_seconds * 1e9 / record.steps.max(1) as f64)),
     ("cost [s/s]", |record, _| short(record.seconds_per_simulated_second())),
 ];
 
 /// The headings of a comparison.
 pub(crate) fn headings() -> [&'static str; CELLS.len()] {
     CELLS.map(|(heading, _)| heading)
+}
+
+/// A time (ns) without digits that are noise.
+fn nanoseconds(time: f64) -> String {
+    if time < 1000.0 { format!("{time:.1}") } else { format!("{time:.0}") }
 }
 
 /// A number in two digits; `-` if there is none.
@@ -92,69 +97,67 @@ pub(crate) fn better(record: &Record, better: &[(&str, f64)]) -> Option<String> 
     (!overtaken.is_empty()).then(|| format!("{name} has a smaller energy error than {}", overtaken.join(", ")))
 }
 
-/// The table of a comparison, split into several tables if it is wider than `room` (characters).
-pub(crate) fn comparison(
-    scene: &AnyScene,
-    rows: &[ComparisonRow],
-    interrupted: Option<&str>,
-    room: Option<usize>,
-) -> String {
-    // A refusal or a failure needs more room than a column has: its text follows the row.
-    let short = |row: &ComparisonRow| row.cells.len() < CELLS.len();
-    let remark = |row: &ComparisonRow| row.cells.last().filter(|_| short(row)).cloned();
-    let own = |row: &ComparisonRow| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
-    let cells: Vec<_> = rows.iter().map(own).collect();
+/// The columns that fit a screen of 80 characters, and what they are called there.
+const NARROW: [(&str, &str); 6] = [
+    ("method", "method"),
+    ("constraint [m/s]", "constraint"),
+    ("energy error [J]", "energy error"),
+    ("verdict", "verdict"),
+    ("end error", "end error"),
+    ("ns/step", "ns/step"),
+];
+
+/// The table of a comparison, with all columns if it may be `wide`. Methods that refuse or fail follow it, by their reasons.
+pub(crate) fn comparison(scene: &AnyScene, rows: &[ComparisonRow], interrupted: Option<&str>, wide: bool) -> String {
+    let name = |heading: &'static str| match NARROW.iter().find(|(own, _)| *own == heading) {
+        _ if wide => Some(heading),
+        narrow => narrow.map(|(_, name)| *name),
+    };
+    let shown: Vec<(usize, &str)> =
+        CELLS.iter().enumerate().filter_map(|(column, (heading, _))| Some((column, name(heading)?))).collect();
+    let (made, left): (Vec<_>, Vec<_>) = rows.iter().partition(|row| row.cells.len() == CELLS.len());
+    let headings: Vec<&str> = shown.iter().map(|(_, name)| *name).collect();
+    let cells: Vec<Vec<String>> =
+        made.iter().map(|row| shown.iter().map(|(column, _)| row.cells[*column].clone()).collect()).collect();
     let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(scene.run().duration));
-    let headings = headings();
-    let parts = parts(&headings, &cells, room);
-    for (k, columns) in parts.iter().enumerate() {
-        // A short row has no numbers for the tables after the first.
-        let rows: Vec<_> = rows.iter().zip(&cells).filter(|(row, _)| k == 0 || !short(row)).collect();
-        let remarks = std::iter::once(None).chain(rows.iter().map(|(row, _)| remark(row)));
-        let pick = |cells: &Vec<String>| columns.iter().filter_map(|column| cells.get(*column).cloned()).collect();
-        let (cells, header): (Vec<Vec<String>>, Vec<&str>) = (
-            rows.iter().map(|(_, cells)| pick(cells)).collect(),
-            columns.iter().map(|column| headings[*column]).collect(),
-        );
-        text += if k == 0 { "" } else { "\n" };
-        for (line, remark) in right_aligned(&header, &cells).lines().zip(remarks) {
-            let _ = match remark {
-                Some(remark) => writeln!(text, "{line}  {remark}"),
-                None => writeln!(text, "{line}"),
-            };
+    text += &right_aligned(&headings, &cells);
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for row in left {
+        let (name, reason) = (row.cells[0].as_str(), row.cells.last().map_or("", String::as_str));
+        match reasons.iter_mut().find(|(other, _)| *other == reason) {
+            Some((_, names)) => names.push(name),
+            None => reasons.push((reason, vec![name])),
         }
     }
-    for better in rows.iter().filter_map(|row| row.better.as_ref()) {
-        let _ = writeln!(text, " {better}");
-    }
-    if let Some(made) = interrupted {
-        let _ = writeln!(text, " interrupted: {made}");
+    let further = reasons.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", ")));
+    let better = rows.iter().filter_map(|row| row.better.clone());
+    let interrupted = interrupted.map(|made| format!("interrupted: {made}"));
+    for line in further.chain(better).chain(interrupted) {
+        text += &format!("{}\n", wrapped_to(&line, WIDTH - 4).join("\n    "));
     }
     text
 }
 
-/// The columns of each of the tables that are no wider than the room, the first column in all of them.
-fn parts(header: &[&str], rows: &[Vec<String>], room: Option<usize>) -> Vec<Vec<usize>> {
-    // A space on each side, one of which is trimmed at the end of a line.
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|cells| cells.get(column)).map(String::as_str);
-        cells.chain([header[column]]).map(|text| text.chars().count()).max().unwrap_or(0) + 2
-    };
-    let mut parts = vec![vec![0]];
-    let mut used = width(0);
-    for column in 1..header.len() {
-        if room.is_some_and(|room| used + width(column) > room + 1) {
-            parts.push(vec![0]);
-            used = width(0);
-        }
-        used += width(column);
-        if let Some(part) = parts.last_mut() {
-            part.push(column);
+/// No line of words is longer (characters).
+pub(crate) const WIDTH: usize = 80;
+
+/// A sentence on lines of its own.
+pub(crate) fn wrapped(sentence: &str) -> String {
+    wrapped_to(sentence, WIDTH).iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// A text in lines of at most `width` characters.
+pub(crate) fn wrapped_to(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last().map_or(0, |line| line.chars().count());
+        match lines.last_mut() {
+            Some(last) if line == 0 => last.push_str(word),
+            Some(last) if line + 1 + word.chars().count() <= width => *last += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
         }
     }
-    // In a room narrower than any column, every column has a table of its own, and the first none.
-    parts.retain(|part| part.len() > 1);
-    parts
+    lines
 }
 
 /// A table, all columns but the first aligned to the right.

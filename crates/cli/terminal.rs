@@ -51,13 +51,6 @@ pub(crate) fn tell(text: &str) {
     }
 }
 
-/// The width of standard output (columns), from `COLUMNS` or from the terminal; `None` if neither tells it.
-pub(crate) fn width() -> Option<usize> {
-    let asked = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse().ok());
-    let terminal = || console::Term::stdout().size_checked().map(|(_, columns)| usize::from(columns));
-    asked.filter(|columns| *columns > 0).or_else(terminal)
-}
-
 /// Prints one JSON value.
 pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), CliError> {
     print(&format!("{value:#}\n"))

@@ -125,6 +125,12 @@ fn a_new_scene_is_valid_runs_and_is_never_overwritten_unasked() {
     folder.done("new my.toml --force");
     assert_eq!(folder.read("my.toml"), template);
 
+    folder.done("new text.toml --system");
+    assert!(folder.done("check text.toml").starts_with("text: valid"));
+    let run = folder.json("run text.toml --set system.parameters.drag=0.0 --until lambda_edge=0.2 --json");
+    assert!((run["final"]["grip"].as_f64().unwrap() - 0.2).abs() < 1e-9, "{run}");
+    std::fs::remove_file(folder.join("text.toml")).unwrap();
+
     let outcome = folder.line("new none/my.toml");
     assert_eq!((outcome.code, outcome.stdout.as_str()), (1, ""));
     outcome.assert_told("new", &["none/my.toml"]);

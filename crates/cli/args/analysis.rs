@@ -97,6 +97,9 @@ pub(crate) struct CompareArguments {
     /// Methods, separated by commas [default: all]
     #[arg(long, value_name = "M,..", value_delimiter = ',')]
     pub(crate) methods: Option<Vec<String>>,
+    /// Print all columns: steps, the discrete constraint, the drift of the energy, Newton's iterations, the cost
+    #[arg(long)]
+    pub(crate) wide: bool,
     /// Write a report with pictures into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,

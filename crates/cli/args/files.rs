@@ -150,6 +150,9 @@ pub(crate) struct NewArguments {
     /// The file to write; - is standard output
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
+    /// A system of text, of any Lagrangian, in place of a sleigh
+    #[arg(long)]
+    pub(crate) system: bool,
     /// Overwrite a file that exists already
     #[arg(long)]
     pub(crate) force: bool,

@@ -9,11 +9,11 @@ use crate::files::ClaimedFolder;
 use crate::inspect::{method_names, methods};
 use crate::interrupt::Interrupt;
 use crate::resume::Saves;
-use crate::row_verdict::Totals;
+use crate::row_verdict::{self, Totals};
 use crate::table::ComparisonRow;
 use crate::{precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
-use report::Report;
+use report::{Report, SceneReport};
 use scene::{AnyScene, Overrides};
 use serde_json::Value;
 use std::path::Path;
@@ -64,7 +64,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let cells: Vec<Vec<String>> = objects.into_iter().map(words::cells).collect();
     terminal::print(&format!("{heading}\n\n{}\n", table::left_aligned(&words::COLUMNS, &cells)))?;
     for sentence in &sentences {
-        terminal::print(&words::wrapped(sentence))?;
+        terminal::print(&table::wrapped(sentence))?;
     }
 
     report.columns = words::COLUMNS.map(str::to_owned).to_vec();
@@ -84,12 +84,12 @@ fn everything(folder: &Path) -> Result<(), CliError> {
     let mut failures = Vec::new();
     let mut totals = Totals::default();
     let (interrupt, mut interrupted) = (Interrupt::listen(), None);
-    for bundled in scene::bundled() {
+    let mut tables = String::new();
+    for bundled in scene::bundled().iter().chain(scene::bundled_texts()) {
         let scene = AnyScene::load(bundled.name, &method_names())?;
         let methods = methods(&method_names(), scene.run().alpha, scene.run().tolerance)?;
         let comparison = compare_scene(&scene, &methods, &Saves::default(), &interrupt)?;
-        comparison.print(&scene)?;
-        terminal::print("\n")?;
+        tables += &format!("\n{}", comparison.table(&scene, false));
         comparison.rows.iter().for_each(|row| totals.add(&row.json));
         let failed = comparison.rows.into_iter().filter_map(ComparisonRow::unexpected);
         failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name())));
@@ -99,7 +99,16 @@ fn everything(folder: &Path) -> Result<(), CliError> {
             break;
         }
     }
-    terminal::print(&totals.table(scenes.len()))?;
+    let together = SceneReport {
+        name: "all".to_owned(),
+        title: format!("All {} scenes together", scenes.len()),
+        columns: row_verdict::COLUMNS.map(str::to_owned).to_vec(),
+        rows: totals.rows(),
+        ..SceneReport::default()
+    };
+    terminal::print(&format!("{}\n{}", together.title, table::right_aligned(&row_verdict::COLUMNS, &together.rows)))?;
+    terminal::print(&tables)?;
+    scenes.insert(0, together);
     let title = "What accuracy costs, and what structure keeps".to_owned();
     let report = Report { title, intro: table::INTRO.to_owned(), scenes, ..Report::default() };
     report::write(&report, folder).map_err(CliError::Report)?;

@@ -1,7 +1,7 @@
 //! The words of the first screen on its numbers.
 
 use crate::row_verdict::{Energy, slips};
-use crate::table::{aligned, number};
+use crate::table::{WIDTH, aligned, number, wrapped_to};
 use harness::precision::Cheapest;
 use scene::AnyScene;
 use serde_json::Value;
@@ -32,9 +32,6 @@ every method on every scene      noslip --all
 one run, and its picture         noslip plot turnaround
 a scene of your own              noslip new my.toml; noslip compare my.toml
 ";
-
-/// No line is longer.
-const WIDTH: usize = 80;
 
 /// The row of the table: the answers of a row of `compare --json` to the columns' questions.
 pub(crate) fn cells(row: &Value) -> Vec<String> {
@@ -163,24 +160,6 @@ pub(crate) fn explanation() -> String {
     };
     let columns: String = COLUMNS.iter().zip(MEANINGS).map(one).collect();
     columns + &aligned(&[("noslip compare SCENE", "more columns, any methods, any scene")])
-}
-
-/// A sentence on lines of its own.
-pub(crate) fn wrapped(sentence: &str) -> String {
-    wrapped_to(sentence, WIDTH).iter().map(|line| format!("{line}\n")).collect()
-}
-
-fn wrapped_to(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let line = lines.last().map_or(0, |line| line.chars().count());
-        match lines.last_mut() {
-            Some(last) if line == 0 => last.push_str(word),
-            Some(last) if line + 1 + word.chars().count() <= width => *last += &format!(" {word}"),
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
 
 /// Joins parts to a sentence, with a capital letter only if a word begins it: names of methods are small.

@@ -209,6 +209,12 @@ impl TextScene {
         Ok(scene)
     }
 
+    /// A complete scene with comments, to start a new file from.
+    #[must_use]
+    pub fn template() -> &'static str {
+        include_str!("../template_system.toml")
+    }
+
     /// The steps of the run, as [`Scene::schedule`].
     #[must_use]
     pub fn schedule(&self) -> Schedule {

@@ -3,7 +3,7 @@
 mod dictionary;
 mod validator;
 
-use scene::{AnyScene, EFFECTS, EffectInfo, Scene, SceneEffect, SceneError, bundled, bundled_texts};
+use scene::{AnyScene, EFFECTS, EffectInfo, Scene, SceneEffect, SceneError, TextScene, bundled, bundled_texts};
 use serde_json::Value;
 use validator::validate;
 
@@ -195,7 +195,12 @@ fn check(text: &str, mutants: &[(&str, &str)]) {
 
 #[test]
 fn bundled_scenes_and_the_template_are_valid() {
-    for text in bundled().iter().chain(bundled_texts()).map(|scene| scene.text).chain([Scene::template()]) {
+    for text in bundled()
+        .iter()
+        .chain(bundled_texts())
+        .map(|scene| scene.text)
+        .chain([Scene::template(), TextScene::template()])
+    {
         valid(text).unwrap_or_else(|error| panic!("{error}"));
     }
 }
