@@ -93,7 +93,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     if arguments.json {
         terminal::print_json(&precision_text::json(&scene, &measured))?;
     } else {
-        terminal::print(&precision_text::text(&scene, &measured))?;
+        terminal::print(&precision_text::text(&scene, &measured, arguments.wide))?;
         let page = arguments.report.as_ref().map(|folder| folder.join("index.html"));
         for (what, path) in [("points", arguments.csv.as_ref()), ("report", page.as_ref())] {
             path.map_or(Ok(()), |path| terminal::print(&format!("{what}: {}\n", path.display())))?;

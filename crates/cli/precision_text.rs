@@ -4,7 +4,7 @@ use crate::format::quoted;
 use crate::json::failure;
 use crate::precision::Measurement;
 use crate::provenance::{Provenance, headed};
-use crate::table::{number, right_aligned};
+use crate::table::{by_reason, indented, number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, seconds_to};
 use report::{CostCurve, CostPoint, Numbers, Report, SceneReport, Table, file_stem};
 use scene::AnyScene;
@@ -78,15 +78,12 @@ fn verdicts(curves: &[Curve]) -> String {
             (Some((best, seconds)), Some((next, _)), Some(factor)) => {
                 writeln!(
                     text,
-                    "cheapest at an error of {error}: {best} with {} s; {next} takes {factor:.2} times as long",
-                    number(*seconds)
+                    "cheapest at an error of {error}: {best} with {seconds:.1e} s; {next} {factor:.2} times that"
                 )
             }
-            (Some((best, seconds)), ..) => writeln!(
-                text,
-                "cheapest at an error of {error}: {best} with {} s; no other method reaches this error",
-                number(*seconds)
-            ),
+            (Some((best, seconds)), ..) => {
+                writeln!(text, "cheapest at an error of {error}: {best} with {seconds:.1e} s, and no other")
+            }
             (None, ..) => writeln!(text, "no method reaches an error of {error}"),
         };
     }
@@ -113,15 +110,34 @@ fn clock(measured: &Measurement) -> String {
     format!("{time}, {place}, {} rounds", clock.rounds)
 }
 
-/// The tables on a terminal.
-pub(crate) fn text(scene: &AnyScene, measured: &Measurement) -> String {
+/// What a terminal shows: what is cheapest, the methods, and, if it may be `wide`, every point.
+pub(crate) fn text(scene: &AnyScene, measured: &Measurement, wide: bool) -> String {
     let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(measured.duration));
-    let _ = writeln!(text, "reference: {}\ntimes: {}\n", reference(measured), clock(measured));
-    text += &noted(&POINTS, points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect());
+    text += &indented(&format!("reference: {}", reference(measured)));
+    text += &format!("times: {}\n\n", clock(measured));
+    text += &verdicts(&measured.curves);
     text.push('\n');
-    text += &noted(&METHODS, measured.curves.iter().map(summary).collect());
-    text.push('\n');
-    text + &verdicts(&measured.curves)
+    if wide {
+        text += &noted(&METHODS, measured.curves.iter().map(summary).collect());
+        text.push('\n');
+        text += &noted(&POINTS, points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect());
+        text.push('\n');
+        return text;
+    }
+    let (mut rows, mut left) = (Vec::new(), Vec::new());
+    for curve in &measured.curves {
+        let (cells, note) = summary(curve);
+        if note.is_empty() {
+            let times = LEVELS.map(|level| {
+                seconds_to(&curve.points, level).map_or_else(|| "-".to_owned(), |seconds| format!("{seconds:.1e}"))
+            });
+            rows.push([vec![cells[0].clone(), cells[2].clone()], times.to_vec()].concat());
+        } else {
+            left.push((curve.label(), note));
+        }
+    }
+    text += &right_aligned(&["method", "slope", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"], &rows);
+    text + &by_reason(&left)
 }
 
 /// A table with remarks after its rows.

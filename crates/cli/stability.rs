@@ -48,7 +48,7 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
     if arguments.json {
         terminal::print_json(&json!({"cases": rows.iter().map(object).collect::<Vec<_>>()}))?;
     } else {
-        terminal::print(&text(&rows))?;
+        terminal::print(&text(&rows, arguments))?;
     }
     let failed = rows.iter().filter(|row| row.verdict.outcome == Outcome::Failed);
     let failed = failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why));
@@ -81,26 +81,66 @@ fn object(row: &CaseRow) -> Value {
     })
 }
 
-fn text(rows: &[CaseRow]) -> String {
+/// The outcome on the screen: a method that ran and missed a bar that it does not claim to meet has not refused.
+fn outcome(verdict: &Verdict) -> String {
+    let ran = verdict.worst.is_some_and(|worst| worst.measured.is_finite());
+    if verdict.outcome == Outcome::Refused && ran { "missed".to_owned() } else { verdict.outcome.to_string() }
+}
+
+/// How many cases each method passes, refuses, misses and fails.
+fn summary(rows: &[CaseRow]) -> String {
+    let mut methods: Vec<&str> = Vec::new();
+    for row in rows {
+        if !methods.contains(&row.method) {
+            methods.push(row.method);
+        }
+    }
+    let counted = |method: &str| -> Vec<String> {
+        let own = || rows.iter().filter(|row| row.method == method);
+        let of = |word: &str| own().filter(|row| outcome(&row.verdict) == word).count().to_string();
+        [method.to_owned(), own().count().to_string()].into_iter().chain(WORDS.map(of)).collect()
+    };
+    let cells: Vec<Vec<String>> = methods.into_iter().map(counted).collect();
+    table::right_aligned(&[&["method", "cases"][..], &WORDS].concat(), &cells)
+}
+
+/// What may come of a case, on the screen.
+const WORDS: [&str; 4] = ["pass", "refused", "missed", "failed"];
+
+/// The rows of one case, or of all of them if the table may be `wide`.
+fn details(rows: &[CaseRow], wide: bool) -> String {
+    /// Longer reasons follow the table.
+    const SHORT: usize = 32;
     let number = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
     let cells: Vec<_> = rows
         .iter()
         .map(|row| {
             let worst = row.verdict.worst;
             let (measured, bar) = (worst.map(|worst| worst.measured), worst.map(|worst| worst.bar));
-            let outcome = row.verdict.outcome.to_string();
-            vec![row.case.to_owned(), row.method.to_owned(), outcome, number(measured), number(bar)]
+            let cells = vec![row.method.to_owned(), outcome(&row.verdict), number(measured), number(bar)];
+            if wide { [vec![row.case.to_owned()], cells].concat() } else { cells }
         })
         .collect();
-    let table = table::right_aligned(&["case", "method", "outcome", "measured", "bar"], &cells);
-    let mut text = String::new();
-    // The line that says why is as long as it must be.
+    let headings = ["case", "method", "outcome", "measured", "bar"];
+    let table = table::right_aligned(if wide { &headings } else { &headings[1..] }, &cells);
+    let is_short = |why: &str| wide || why.chars().count() <= SHORT;
+    let (mut text, mut left) = (String::new(), Vec::new());
     let whys = std::iter::once("why").chain(rows.iter().map(|row| row.verdict.why.as_str()));
-    for (line, why) in table.lines().zip(whys) {
-        let _ = writeln!(text, "{line}  {why}");
+    for (k, (line, why)) in table.lines().zip(whys).enumerate() {
+        let _ = writeln!(text, "{}", format!("{line}  {}", if is_short(why) { why } else { "" }).trim_end());
+        if let Some(row) = k.checked_sub(1).and_then(|k| rows.get(k)).filter(|_| !is_short(why)) {
+            left.push((row.method.to_owned(), why.to_owned()));
+        }
     }
-    let count = |outcome| rows.iter().filter(|row| row.verdict.outcome == outcome).count();
-    let [pass, refused, failed] = [Outcome::Pass, Outcome::Refused, Outcome::Failed].map(count);
-    let _ = writeln!(text, "{pass} pass, {refused} refused, {failed} failed");
+    text + &table::by_reason(&left)
+}
+
+fn text(rows: &[CaseRow], arguments: &StabilityArguments) -> String {
+    let one = arguments.case.is_some();
+    let mut text = if one || arguments.wide { details(rows, arguments.wide) } else { summary(rows) };
+    let count = |word: &str| rows.iter().filter(|row| outcome(&row.verdict) == word).count();
+    let [pass, refused, missed, failed] = WORDS.map(count);
+    let _ =
+        writeln!(text, "{pass} pass, {refused} refused, {missed} missed a bar that is not claimed, {failed} failed");
     text
 }

@@ -121,21 +121,30 @@ pub(crate) fn comparison(scene: &AnyScene, rows: &[ComparisonRow], interrupted: 
         made.iter().map(|row| shown.iter().map(|(column, _)| row.cells[*column].clone()).collect()).collect();
     let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(scene.run().duration));
     text += &right_aligned(&headings, &cells);
+    let left: Vec<(String, String)> =
+        left.into_iter().map(|row| (row.cells[0].clone(), row.cells.last().cloned().unwrap_or_default())).collect();
+    text += &by_reason(&left);
+    let better = rows.iter().filter_map(|row| row.better.clone());
+    let interrupted = interrupted.map(|made| format!("interrupted: {made}"));
+    better.chain(interrupted).for_each(|line| text += &indented(&line));
+    text
+}
+
+/// Methods with what is to be said of them, once for those of which the same is said.
+pub(crate) fn by_reason(methods: &[(String, String)]) -> String {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for row in left {
-        let (name, reason) = (row.cells[0].as_str(), row.cells.last().map_or("", String::as_str));
-        match reasons.iter_mut().find(|(other, _)| *other == reason) {
+    for (name, reason) in methods {
+        match reasons.iter_mut().find(|(other, _)| other == reason) {
             Some((_, names)) => names.push(name),
             None => reasons.push((reason, vec![name])),
         }
     }
-    let further = reasons.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", ")));
-    let better = rows.iter().filter_map(|row| row.better.clone());
-    let interrupted = interrupted.map(|made| format!("interrupted: {made}"));
-    for line in further.chain(better).chain(interrupted) {
-        text += &format!("{}\n", wrapped_to(&line, WIDTH - 4).join("\n    "));
-    }
-    text
+    reasons.into_iter().map(|(reason, names)| indented(&format!("{}: {reason}", names.join(", ")))).collect()
+}
+
+/// A text in lines, those after the first indented.
+pub(crate) fn indented(text: &str) -> String {
+    format!("{}\n", wrapped_to(text, WIDTH - 4).join("\n    "))
 }
 
 /// No line of words is longer (characters).

@@ -24,9 +24,10 @@ fn rows(outcome: &crate::program::Outcome) -> Vec<Value> {
     serde_json::from_str::<Value>(&outcome.stdout).unwrap()["rows"].as_array().unwrap().clone()
 }
 
-/// The row of a method in the table on the terminal.
+/// The row of a method in the table on the terminal, or what is said of the method behind it.
 fn line<'a>(text: &'a str, method: &str) -> &'a str {
-    text.lines().find(|line| line.starts_with(&format!(" {method} "))).unwrap()
+    let is_row = |line: &&str| [format!(" {method} "), format!("{method}: ")].iter().any(|head| line.starts_with(head));
+    text.lines().find(is_row).unwrap()
 }
 
 #[test]
@@ -134,7 +135,7 @@ fn long_runs_that_are_well_are_not_called_diverged_in_full() {
 fn precision_says_why_no_run_of_a_method_succeeds() {
     let folder = Folder::new();
     folder.write("fast.toml", no_step().replace("duration = 40.0", "duration = 1.0"));
-    let outcome = folder.line("precision fast.toml --methods rk4,gauss8 --longest 0.0000001 --csv points.csv");
+    let outcome = folder.line("precision fast.toml --methods rk4,gauss8 --longest 0.0000001 --wide --csv points.csv");
     let told = outcome.stdout.lines().filter(|line| line.starts_with(" gauss8 "));
     let told: Vec<bool> = told.map(|line| line.contains("failed: step 1, from t = 0 s: ")).collect();
     assert_eq!(told, [true, true], "{}", outcome.stdout);

@@ -139,6 +139,9 @@ pub(crate) struct PrecisionArguments {
     /// Points of another program to show too: a JSON file with the keys of --json; can be repeated
     #[arg(long, value_name = "FILE")]
     pub(crate) with: Vec<PathBuf>,
+    /// Print every point, and all columns
+    #[arg(long)]
+    pub(crate) wide: bool,
     /// Write a report with diagrams into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
@@ -161,6 +164,9 @@ pub(crate) struct StabilityArguments {
     /// Methods, separated by commas [default: all]
     #[arg(long, value_name = "M,..", value_delimiter = ',')]
     pub(crate) methods: Option<Vec<String>>,
+    /// Print a row for every method on every case, with what was measured and why
+    #[arg(long)]
+    pub(crate) wide: bool,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,

@@ -138,6 +138,11 @@ impl Series {
 }
 
 impl SceneReport {
+    /// Whether it is a table alone, without runs to draw.
+    fn is_table(&self) -> bool {
+        self.series.is_empty() && self.costs.is_none() && self.figure.is_none()
+    }
+
     /// The runs that are drawn, each with its place among all.
     fn drawn(&self) -> impl Iterator<Item = (usize, &Series)> {
         self.series.iter().enumerate().filter(|(_, series)| series.is_drawn())
@@ -206,7 +211,9 @@ pub fn write(report: &Report, directory: &Path) -> Result<Vec<PathBuf>, ReportEr
     let mut scenes = Vec::with_capacity(names.len());
     let mut contents = vec![(page::PAGE.to_owned(), Vec::new())];
     for (scene, name) in report.scenes.iter().zip(&names) {
-        let (figures, animation) = if let Some(costs) = &scene.costs {
+        let (figures, animation) = if scene.is_table() {
+            (Vec::new(), None)
+        } else if let Some(costs) = &scene.costs {
             let picture = |time| costs::picture(costs, &scene.title, name, time);
             (vec![picture(true), picture(false)], None)
         } else {

@@ -117,6 +117,10 @@ fn section(page: &mut String, scene: &SceneReport, shown: &ShownScene<'_>, notes
     numbers(page, name, &scene.numbers);
     legend(page, scene);
     let mut right: Vec<String> = shown.figures.iter().map(figure).collect();
+    if right.is_empty() {
+        *page += "</section>\n";
+        return;
+    }
     let mut left = vec![right.remove(0)];
     // A run without a path, of a system without a place, has no empty picture of one.
     let place = scene.costs.is_some() || scene.series.iter().any(|series| !series.path.is_empty());
