@@ -9,7 +9,7 @@ use crate::table::ComparisonRow;
 use crate::{account, facts, inspect, json, progress, table, terminal, train};
 use dla::{AnyState, Schedule};
 use harness::{Drift, DriftVerdict, Method, Progress, Record, Request, Run};
-use report::{HEADINGS, Report, SceneReport, Series};
+use report::{Body, HEADINGS, Report, SceneReport, Series};
 use scene::{AnyScene, Built};
 use sleigh::Exact;
 use std::path::PathBuf;
@@ -135,6 +135,7 @@ pub(crate) fn compare_scene(
     let report = SceneReport {
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
+        body: if system.sleigh().is_some() { Body::Sleigh } else { Body::Other },
         facts: facts::of(scene)?,
         columns: table::headings().map(str::to_owned).to_vec(),
         rows: rows.iter().map(|row| row.cells.clone()).collect(),

@@ -119,6 +119,20 @@ struct SteadyMotion {
     limit: Option<StepLimit>,
 }
 
+/// What the eigenvalues of the flow say of a motion. More of them vanish than the motion has parameters where the motion may drift: these
+/// say nothing.
+fn stability(stable: bool, family: usize, flow: &[[f64; 2]]) -> &'static str {
+    /// A double eigenvalue of zero and its rounding, relative to the largest.
+    const ZERO: f64 = 1e-7;
+    let sizes = || flow.iter().map(|[re, im]| re.hypot(*im));
+    let zero = ZERO * sizes().fold(1.0, f64::max);
+    match stable {
+        false => "unstable",
+        true if sizes().filter(|size| *size <= zero).count() > family => "neutral: eigenvalues that vanish do not tell",
+        true => "stable",
+    }
+}
+
 /// The names of the coordinates of a sleigh.
 const COORDINATES: [&str; 4] = ["x", "y", "heading", "rotor"];
 
@@ -151,7 +165,7 @@ impl SteadyMotion {
     fn told(self) -> String {
         let Self { mut lines, family, stable, flow, map, limit, .. } = self;
         lines.extend([
-            ("", if stable { "stable".to_owned() } else { "unstable".to_owned() }),
+            ("", stability(stable, family, &flow).to_owned()),
             ("parameters", family.to_string()),
             ("flow [1/s]", complex_numbers(&flow)),
             ("map", map.as_deref().map_or_else(MapError::to_string, complex_numbers)),

@@ -48,6 +48,14 @@ pub(crate) fn warn(record: &Record) {
 /// Says which numbers of the start the constraints of a scene do not admit.
 pub(crate) fn moves(scene: &AnyScene) {
     let AnyScene::Text(scene) = scene else { return };
+    let degrees = |unit: &str| ["deg", "degree", "degrees", "°"].contains(&unit);
+    for coordinate in scene.model.coordinates().iter().filter(|coordinate| degrees(coordinate.unit.name())) {
+        let (name, unit) = (&coordinate.name, coordinate.unit.name());
+        let note = format!(
+            "formulas have the number of `{name}` in {unit}, and sin({name}) takes it as rad: write sin(pi/180*{name})"
+        );
+        terminal::say("note", &note);
+    }
     for (first, moved) in scene.start.moved.iter().enumerate().map(|(k, moved)| (k == 0, moved)) {
         let (from, to) = (number(moved.from), number(moved.to));
         let note = format!(

@@ -78,11 +78,11 @@ fn verdicts(curves: &[Curve]) -> String {
             (Some((best, seconds)), Some((next, _)), Some(factor)) => {
                 writeln!(
                     text,
-                    "cheapest at an error of {error}: {best} with {seconds:.1e} s; {next} {factor:.2} times that"
+                    "cheapest to {error}: {best} with {seconds:.1e} s; {next} takes {factor:.2} times as long"
                 )
             }
             (Some((best, seconds)), ..) => {
-                writeln!(text, "cheapest at an error of {error}: {best} with {seconds:.1e} s, and no other")
+                writeln!(text, "cheapest to {error}: {best} with {seconds:.1e} s, and no other")
             }
             (None, ..) => writeln!(text, "no method reaches an error of {error}"),
         };

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::files::ClaimedFolder;
 use crate::provenance::label;
 use crate::{facts, inspect, plot, table, terminal, train};
-use report::{HEADINGS, Report, SceneReport, Series};
+use report::{Body, HEADINGS, Report, SceneReport, Series};
 use scene::{AnyScene, Column};
 
 /// Makes the run, and its page if one is asked for. For the page it is made a second time, with fewer nodes kept.
@@ -42,6 +42,7 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let shown = SceneReport {
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
+        body: if matches!(scene, AnyScene::Sleigh(_)) { Body::Sleigh } else { Body::Other },
         facts: facts::described(&scene)?,
         columns: ["column", "start", "end", "least", "largest"].map(str::to_owned).to_vec(),
         rows: columns.iter().map(row).collect(),

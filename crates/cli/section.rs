@@ -133,6 +133,9 @@ fn tell(
     lines.push(("plane".to_owned(), format!("{plane}, {direction}")));
     lines.extend([("starts", crossed.len()), ("crossings", count)].map(|(name, k)| (name.to_owned(), k.to_string())));
     let close = crossed.iter().filter_map(|start| start.close).reduce(Close::and);
+    let none = (count == 0 && whole == starts).then(|| {
+        format!("no motion crosses {plane} {direction}: try another value, --direction both, or a longer --duration")
+    });
     let failed = |one: &PlaneCrossing| Some(format!("start {}: {}", one.start, one.failure.as_ref()?));
     analysis.tell(AnalysisResult {
         columns: [&[Column::whole("start"), Column::new("t", "s")][..], &state, &shown].concat(),
@@ -151,7 +154,7 @@ fn tell(
         lines,
         again: command.maybe_number("--energy", arguments.energy),
         notes: json!({"plane": plane, "direction": direction, "axes": names, "starts": arguments.starts}),
-        warning: close.map(|close| format!("{}; a shorter --step samples more times", in_doubt(&close))),
+        warning: close.map(|close| format!("{}; a shorter --step samples more times", in_doubt(&close))).or(none),
         failures: crossed.iter().filter_map(failed).collect(),
         interrupted: (whole < starts).then(|| format!("{whole} of {starts} starts finished{begun}")),
     })

@@ -36,7 +36,7 @@ pub(crate) struct PlotArguments {
     #[arg(long, value_name = "N", default_value_t = 300, allow_hyphen_values = true, value_parser = dpi)]
     pub(crate) dpi: u32,
     /// The picture: .svg, .png or .pdf, by the ending [default: the name of the scene or file, .svg]
-    #[arg(long, value_name = "PICTURE")]
+    #[arg(long, value_name = "PICTURE", visible_alias = "picture")]
     pub(crate) out: Option<PathBuf>,
     /// Overwrite a picture that exists already
     #[arg(long)]

@@ -39,6 +39,29 @@ pub struct Comparison {
 /// println!("{compared}");
 /// # Ok::<(), noslip::harness::MethodError>(())
 /// ```
+///
+/// A system of two functions, whose forces never jump, goes as [`Subject::smooth`]:
+///
+/// ```
+/// use noslip::{Constraint, Scalar, Schedule, Subject, System};
+///
+/// struct Particle;
+///
+/// impl System<3, 1> for Particle {
+///     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
+///         (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5
+///     }
+///     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+///         ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
+///     }
+/// }
+///
+/// let schedule = Schedule { t0: 0.0, step: 0.01, steps: 300 };
+/// let start = ([0.1, 0.2, 0.3], [0.9, 0.7, 0.2 * 0.9]);
+/// let compared = noslip::compare(Subject::smooth(&Particle), &["dla", "rk4"], &schedule, start)?;
+/// assert!(compared.runs.iter().all(|run| run.failure.is_none() && run.energy.max_error < 1e-4));
+/// # Ok::<(), noslip::harness::MethodError>(())
+/// ```
 pub fn compare<'a, const N: usize, const M: usize>(
     system: impl Into<Subject<'a, N, M>>,
     methods: &[&str],

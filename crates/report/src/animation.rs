@@ -5,7 +5,7 @@ use super::frame::Frame;
 use super::look::Ink;
 use super::path::{path, view};
 use super::svg::{escape, units};
-use super::{SceneReport, Series, sleigh};
+use super::{Body, SceneReport, Series, sleigh};
 
 /// How many nodes may be left out in a row.
 const GAP: usize = 40;
@@ -33,9 +33,10 @@ pub(crate) fn figure(scene: &SceneReport) -> Option<String> {
         return None;
     }
     path(&mut ground, &series.path, (Ink::Text, 0.3, 1.2));
-    let picture = ground.named(String::new(), format!("{}: the sleigh in motion", scene.title), String::new());
+    let body = if scene.body == Body::Sleigh { "sleigh" } else { "system" };
+    let picture = ground.named(String::new(), format!("{}: the {body} in motion", scene.title), String::new());
     let rotor = !series.rotor.is_empty();
-    let drawing = picture.inline(&stage(method, &frame, first, rotor));
+    let drawing = picture.inline(&stage((method, scene.body), &frame, first, rotor));
     let (from, to, step) = (first.t, last.t, (last.t - first.t) / 500.0);
     let digits = (-((to - from) / TICKS).log10().floor()).clamp(0.0, 17.0) as usize;
     let mut lists = list("t", nodes.iter().map(|node| node.t), digits);
@@ -54,7 +55,7 @@ pub(crate) fn figure(scene: &SceneReport) -> Option<String> {
          min=\"{from}\" max=\"{to}\" step=\"{step}\" value=\"{from}\"><output></output>\
          <label>Speed <select></select></label></div>\n\
          <script type=\"application/json\">{{{lists}}}</script>\n\
-         <figcaption>The motion of the sleigh by {}, with the path so far, and in grey the whole path.{turning}\
+         <figcaption>The motion of the {body} by {}, with the path so far, and in grey the whole path.{turning}\
          </figcaption>\n</figure>\n",
         escape(&series.label)
     ))
@@ -77,7 +78,7 @@ fn moved(nodes: &[DrawnNode], blade: usize) -> String {
 }
 
 /// What moves, at the first node, cut off at the frame.
-fn stage(method: usize, frame: &Frame, first: &DrawnNode, rotor: bool) -> String {
+fn stage((method, body): (usize, Body), frame: &Frame, first: &DrawnNode, rotor: bool) -> String {
     let [left, top, width, height] = [frame.left, frame.top, frame.width, frame.height].map(units);
     let at = |blade: &[f64]| format!("{},{}", units(blade[0]), units(blade[1]));
     let moving = |class: &str, blade: &[f64], shape: &str| {
@@ -85,7 +86,7 @@ fn stage(method: usize, frame: &Frame, first: &DrawnNode, rotor: bool) -> String
         format!("<g class=\"{class}\" transform=\"translate({}) rotate({turn:.2})\">{shape}</g>", at(blade))
     };
     let (own, behind) = first.blades.split_at(3);
-    let sleigh = moving("sleigh", own, &sleigh::shape(rotor));
+    let sleigh = moving("sleigh", own, &sleigh::shape(body, rotor));
     let mut train = String::new();
     if !behind.is_empty() {
         let places: Vec<String> = first.blades.chunks(3).map(at).collect();

@@ -7,7 +7,7 @@ use super::look::{self, Ink};
 use super::svg::label;
 use super::thinning::{Trace, peaks};
 use super::ticks::{Tick, across, decades, margin, power};
-use super::{SceneReport, Series};
+use super::{Body, SceneReport, Series};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 250.0;
@@ -35,8 +35,9 @@ const NEAR: f64 = 1.5;
 pub(crate) struct Drift {
     file: &'static str,
     title: &'static str,
-    axis: &'static str,
-    caption: &'static str,
+    /// The name of the upright axis, and the caption: of a sleigh, and of any other system.
+    axis: [&'static str; 2],
+    caption: [&'static str; 2],
     /// The decade below which nothing is more than rounding.
     least: f64,
     values: fn(&Series) -> &Vec<f64>,
@@ -46,8 +47,11 @@ pub(crate) struct Drift {
 pub(crate) const CONSTRAINT: Drift = Drift {
     file: "constraint",
     title: "constraint residual",
-    axis: "|A(q) v + b|  [m/s]",
-    caption: "How fast the blade slips sideways. Around 10⁻¹⁶ there is nothing but rounding: the constraint is kept.",
+    axis: ["|A(q) v + b|  [m/s]", "|A(q) v + b|"],
+    caption: [
+        "How fast the blade slips sideways. Around 10⁻¹⁶ there is nothing but rounding: the constraint is kept.",
+        "By how much the velocities miss the constraints. Around 10⁻¹⁶ there is nothing but rounding: they are kept.",
+    ],
     least: ROUNDING,
     values: |series| &series.constraint,
 };
@@ -56,9 +60,13 @@ pub(crate) const CONSTRAINT: Drift = Drift {
 pub(crate) const ENERGY: Drift = Drift {
     file: "energy",
     title: "energy error",
-    axis: "|E − E₀ − W|  [J]",
-    caption: "The energy error: the energy less its initial value, and less the work W of whatever drives or \
+    axis: ["|E − E₀ − W|  [J]"; 2],
+    caption: [
+        "The energy error: the energy less its initial value, and less the work W of whatever drives or \
         brakes the sleigh. A line that keeps climbing is drift.",
+        "The energy error: the energy less its initial value, and less the work W of whatever drives or \
+        brakes the system. A line that keeps climbing is drift.",
+    ],
     least: f64::NEG_INFINITY,
     values: |series| &series.energy_error,
 };
@@ -69,7 +77,7 @@ pub(crate) fn picture(scene: &SceneReport, name: &str, shown: &Drift) -> Figure 
     let most = (TOGETHER / scene.series.len().max(1)).clamp(FEWEST, POINTS);
     let trace = |series: &Series| peaks(&series.time, values(series), most);
     let traces: Vec<Trace> = scene.series.iter().map(trace).collect();
-    let (y, floor) = axis(&scene.scaling().map(trace).collect::<Vec<_>>(), shown);
+    let (y, floor) = axis(&scene.scaling().map(trace).collect::<Vec<_>>(), scene.body, shown);
     let legend = scene.legend();
     let names: Vec<String> = scene.series.iter().map(|series| label(&series.label, LONGEST)).collect();
     // More names than fit beside the frame are left to the legend.
@@ -104,7 +112,7 @@ pub(crate) fn picture(scene: &SceneReport, name: &str, shown: &Drift) -> Figure 
         name_ends(&mut figure, ends, &names);
     }
     let longest = scene.series.iter().map(|series| series.time.len().min(values(series).len())).max();
-    let mut caption = shown.caption.to_owned();
+    let mut caption = shown.caption[scene.body as usize].to_owned();
     if longest.is_some_and(|longest| longest > most) {
         caption += " Each point is the largest value of a short stretch of time.";
     }
@@ -125,7 +133,7 @@ fn times(scene: &SceneReport) -> Span {
 
 /// The upright axis for these traces: decades, the lowest of which is a line for all that is smaller, or zero; and that line, where something
 /// lies on it.
-fn axis(traces: &[Trace], shown: &Drift) -> (Axis, Option<Tick>) {
+fn axis(traces: &[Trace], body: Body, shown: &Drift) -> (Axis, Option<Tick>) {
     let all: Vec<f64> = traces.iter().flatten().flatten().map(|point| point[1]).collect();
     let best = traces.iter().filter_map(usual).fold(f64::INFINITY, f64::min).log10();
     let worth = |log: &f64| *log >= best - BELOW && *log <= best + ABOVE;
@@ -147,7 +155,7 @@ fn axis(traces: &[Trace], shown: &Drift) -> (Axis, Option<Tick>) {
     // The floor has a tick of its own.
     let ticks = decades(Span { lo, hi }, 7.0, free).into_iter().chain(floor.clone()).collect();
     let span = Span { lo: lo - below, hi };
-    (Axis { name: shown.axis.to_owned(), span, scale: Scale::Decades(lo), ticks }, floor)
+    (Axis { name: shown.axis[body as usize].to_owned(), span, scale: Scale::Decades(lo), ticks }, floor)
 }
 
 /// The middle one of the sizes that are not zero: a peak does not move it, and neither does a dip.

@@ -63,9 +63,21 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
+/// What moves in the pictures of a scene, and in whose words they speak.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Body {
+    /// A sleigh on its blade.
+    #[default]
+    Sleigh,
+    /// Any other system, shown by an arrow at its place.
+    Other,
+}
+
 /// What the report shows of one scene.
 #[derive(Debug, Clone, Default)]
 pub struct SceneReport {
+    /// What moves.
+    pub body: Body,
     /// The short name that the picture files start with; characters unfit for a file name become `-`.
     pub name: String,
     /// The heading of the scene.

@@ -1,11 +1,11 @@
 //! The picture of the paths, seen from above.
 
-use super::SceneReport;
 use super::figure::{Axis, Figure, LegendEntry, Pen};
 use super::frame::{Scale, Span, drawable, visible};
 use super::look::{self, Ink};
 use super::sleigh::{APART, sleighs};
 use super::ticks::{across, linear, margin};
+use super::{Body, SceneReport};
 
 const WIDTH: f64 = 560.0;
 /// Room beside the frame.
@@ -38,11 +38,14 @@ pub(crate) fn picture(scene: &SceneReport, name: &str) -> Figure {
             figure.canvas.cross(method, place);
         }
     }
-    let mut caption =
-        "The path of the blade on the ground, seen from above, with the same scale on both axes.".to_owned();
+    let (path, drawn) = match scene.body {
+        Body::Sleigh => ("The path of the blade on the ground, seen from above", "The sleigh is drawn"),
+        Body::Other => ("The path of (x, y)", "Arrows are drawn"),
+    };
+    let mut caption = format!("{path}, with the same scale on both axes.");
     if let Some((_, series)) = scene.leading() {
-        sleighs(&mut figure.canvas, &frame, series);
-        caption += &format!(" The sleigh is drawn at equally spaced times of the run by {}.", series.label);
+        sleighs(&mut figure.canvas, &frame, scene.body, series);
+        caption += &format!(" {drawn} at equally spaced times of the run by {}.", series.label);
     }
     if exact.is_some() {
         caption += " Thin grey dashes: the exact path.";

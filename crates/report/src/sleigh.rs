@@ -1,11 +1,11 @@
 //! The sleigh itself: its shape, and where it stands along a path.
 
-use super::Series;
 use super::canvas::{Anchor, Canvas, Point};
 use super::figure::SIZE;
 use super::frame::{Frame, distance};
 use super::look::Ink;
 use super::svg::units;
+use super::{Body, Series};
 
 /// The body with its nose ahead, about the blade's contact point; ahead, then to the left.
 const BODY: [[f64; 2]; 9] = [
@@ -19,6 +19,8 @@ const BODY: [[f64; 2]; 9] = [
     [6.0, -7.0],
     [14.0, -4.2],
 ];
+/// An arrow, for any other system.
+const ARROW: [[f64; 2]; 4] = [[13.0, 0.0], [-9.0, 6.5], [-5.0, 0.0], [-9.0, -6.5]];
 /// The blade.
 const BLADE: [[f64; 2]; 2] = [[-6.0, 0.0], [6.0, 0.0]];
 /// The rim of a rotor and its spokes.
@@ -43,7 +45,7 @@ fn turned<const K: usize>(shape: [[f64; 2]; K], [x, y]: Point, heading: f64) -> 
 }
 
 /// Draws the sleigh at equally spaced times, except those at which it would cover itself, and marks the start.
-pub(crate) fn sleighs(canvas: &mut Canvas, frame: &Frame, series: &Series) {
+pub(crate) fn sleighs(canvas: &mut Canvas, frame: &Frame, body: Body, series: &Series) {
     let nodes = series.path.len().min(series.heading.len());
     let mut drawn: Vec<Point> = Vec::new();
     for node in moments(&series.time, nodes) {
@@ -52,11 +54,16 @@ pub(crate) fn sleighs(canvas: &mut Canvas, frame: &Frame, series: &Series) {
         let Some(place) = place.filter(|place| drawn.iter().all(|other| distance(*other, *place) > APART)) else {
             continue;
         };
-        let mut outline = turned(BODY, place, heading).to_vec();
+        let mut outline = match body {
+            Body::Sleigh => turned(BODY, place, heading).to_vec(),
+            Body::Other => turned(ARROW, place, heading).to_vec(),
+        };
         canvas.fill(&outline, [0.0; 2], Ink::Text, 0.13);
         outline.push(outline[0]);
         canvas.line(outline, Ink::Text, 0.75, WIDTHS[0]);
-        canvas.line(turned(BLADE, place, heading), Ink::Text, 1.0, WIDTHS[1]);
+        if body == Body::Sleigh {
+            canvas.line(turned(BLADE, place, heading), Ink::Text, 1.0, WIDTHS[1]);
+        }
         drawn.push(place);
         // The blades behind it, and the bars from each to the next.
         let mut bars = vec![place];
@@ -138,9 +145,13 @@ pub(crate) fn follower() -> String {
     blade(WIDTHS[2])
 }
 
-/// The sleigh at the origin, with a rotor if there is one, for what moves it.
-pub(crate) fn shape(rotor: bool) -> String {
-    let (width, corners, blade) = (units(WIDTHS[0]), corners(&BODY), blade(WIDTHS[1]));
+/// The body at the origin, with a rotor if there is one, for what moves it.
+pub(crate) fn shape(body: Body, rotor: bool) -> String {
+    let width = units(WIDTHS[0]);
+    let (corners, blade) = match body {
+        Body::Sleigh => (corners(&BODY), blade(WIDTHS[1])),
+        Body::Other => (corners(&ARROW), String::new()),
+    };
     let (rim, thin) = (units(RIM), units(1.0));
     let body = format!(
         "<polygon class=\"body\" stroke=\"currentColor\" stroke-width=\"{width}\" points=\"{corners}\"/>{blade}"

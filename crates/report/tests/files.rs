@@ -9,7 +9,12 @@ use std::path::Path;
 fn the_page_and_three_pictures_per_scene_are_written() {
     let parent = tempfile::tempdir().unwrap();
     let directory = parent.path().join("out");
-    let report = report(vec![scene("coast", vec![circle("dla", 700), circle("rk4", 700)]), scene("brake", vec![])]);
+    // A table alone has no pictures.
+    let report = report(vec![
+        scene("all", vec![]),
+        scene("coast", vec![circle("dla", 700), circle("rk4", 700)]),
+        scene("brake", vec![circle("dla", 1)]),
+    ]);
     let files = put(&report, &directory);
     let mut expected = vec![directory.join("index.html")];
     for name in ["coast", "brake"] {

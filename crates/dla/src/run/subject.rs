@@ -43,7 +43,8 @@ impl<const N: usize, const M: usize> OwnMethods<N, M> for () {}
 
 /// A system of a shape as a [`Mechanism`], with the integrators that it brings of its own.
 ///
-/// Every system converts to one without integrators of its own: `Subject::from(&system)`.
+/// Every system converts to one without integrators of its own: `Subject::from(&system)`, or `Subject::smooth(&system)` of a system that is
+/// not [`Piecewise`](lagrangian::Piecewise).
 pub struct Subject<'a, const N: usize, const M: usize> {
     system: Held<'a, N, M>,
     own: &'a dyn OwnMethods<N, M>,
@@ -116,6 +117,13 @@ impl<'a, const N: usize, const M: usize> Subject<'a, N, M> {
     /// A system that answers all questions.
     pub fn new(system: &'a dyn FullMechanics<N, M>, own: &'a dyn OwnMethods<N, M>) -> Self {
         Self { system: Held::Full(system), own, at: 0.0, shaped: Some(&Shaped::ALL) }
+    }
+
+    /// A system whose forces and constraints never jump, which needs no [`Piecewise`](lagrangian::Piecewise) for that. Its motions are not
+    /// differentiated: see [`new`](Self::new).
+    #[must_use]
+    pub fn smooth(system: &'a dyn Mechanics<N, M>) -> Self {
+        Self { system: Held::Smooth(system), own: &(), at: 0.0, shaped: Some(&Shaped::ALL) }
     }
 
     /// A system without jumps that methods of its shape drive: no method by name, and no analysis.
