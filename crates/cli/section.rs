@@ -132,10 +132,11 @@ fn tell(
     let count: usize = crossed.iter().map(|start| start.points.len()).sum();
     lines.push(("plane".to_owned(), format!("{plane}, {direction}")));
     lines.extend([("starts", crossed.len()), ("crossings", count)].map(|(name, k)| (name.to_owned(), k.to_string())));
+    if count == 0 {
+        let hint = "no motion crosses the plane so: try another value, --direction or --duration";
+        lines.push((String::new(), hint.to_owned()));
+    }
     let close = crossed.iter().filter_map(|start| start.close).reduce(Close::and);
-    let none = (count == 0 && whole == starts).then(|| {
-        format!("no motion crosses {plane} {direction}: try another value, --direction both, or a longer --duration")
-    });
     let failed = |one: &PlaneCrossing| Some(format!("start {}: {}", one.start, one.failure.as_ref()?));
     analysis.tell(AnalysisResult {
         columns: [&[Column::whole("start"), Column::new("t", "s")][..], &state, &shown].concat(),
@@ -154,7 +155,7 @@ fn tell(
         lines,
         again: command.maybe_number("--energy", arguments.energy),
         notes: json!({"plane": plane, "direction": direction, "axes": names, "starts": arguments.starts}),
-        warning: close.map(|close| format!("{}; a shorter --step samples more times", in_doubt(&close))).or(none),
+        warning: close.map(|close| format!("{}; a shorter --step samples more times", in_doubt(&close))),
         failures: crossed.iter().filter_map(failed).collect(),
         interrupted: (whole < starts).then(|| format!("{whole} of {starts} starts finished{begun}")),
     })
