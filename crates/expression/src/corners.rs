@@ -54,6 +54,10 @@ impl Corners {
             let argument = match function {
                 Function::Abs | Function::Sign | Function::Where | Function::Unless => a,
                 Function::Min | Function::Max => graph.difference(a, b),
+                Function::Floor => {
+                    let turned = graph.scaled(a, std::f64::consts::PI);
+                    graph.call(Function::Sin, &[turned])
+                }
                 _ => continue,
             };
             if graph.variables(argument) != [time] {
@@ -69,6 +73,7 @@ impl Corners {
                 Function::Sign => side,
                 Function::Abs => graph.product(&[side, a]),
                 Function::Where | Function::Unless => graph.call(function, &[side, b]),
+                Function::Floor => graph.floor_beside(a, side),
                 _ => {
                     let (sum, difference) = (graph.sum(&[a, b]), graph.difference(a, b));
                     let turned = graph.product(&[side, difference]);

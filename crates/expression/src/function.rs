@@ -1,4 +1,4 @@
-use scalar::Scalar;
+use scalar::{Scalar, ScalarFunction};
 
 /// Functions by name: how a text writes them, how many arguments they take, and their value.
 macro_rules! functions {
@@ -75,6 +75,8 @@ functions! {
     Sign "sign" 1 |a, _b| a.sign();
     /// Reciprocal, and 0 of zero: the derivative of a length, which counts as zero at length zero.
     Inverse "inverse" 1 |a, _b| a.abs().where_positive(a.recip(), a * 0.0);
+    /// The largest whole number that is not larger.
+    Floor "floor" 1 |a, _b| a.apply(WholePart);
     /// The second where the first is positive, elsewhere zero.
     Where "where_positive" 2 |a, b| a.where_positive(b, S::zero());
     /// The second where the first is not positive, elsewhere zero.
@@ -85,6 +87,24 @@ functions! {
     Min "min" 2 |a, b| a.min(b);
     /// The larger of two.
     Max "max" 2 |a, b| a.max(b);
+}
+
+/// The largest whole number that is not larger; constant between its jumps.
+#[derive(Debug, Clone, Copy)]
+struct WholePart;
+
+impl ScalarFunction for WholePart {
+    const SMOOTH: bool = false;
+
+    fn value(self, x: f64) -> f64 {
+        x.floor()
+    }
+    fn slope<S: Scalar>(self, _x: S, _f: S) -> S {
+        S::zero()
+    }
+    fn curvature<S: Scalar>(self, _x: S, _f: S, _slope: S) -> S {
+        S::zero()
+    }
 }
 
 impl Function {

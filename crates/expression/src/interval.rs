@@ -152,6 +152,7 @@ impl Interval {
             Function::Abs => a.abs(),
             Function::Sign => Self::new(sign(a.least), sign(a.most)),
             Function::Inverse => a.power(-1.0),
+            Function::Floor => Self::new(a.least.floor(), a.most.floor()),
             Function::Where | Function::Unless => {
                 let chosen = if function == Function::Where { a.least > 0.0 } else { a.most <= 0.0 };
                 let left = if function == Function::Where { a.most <= 0.0 } else { a.least > 0.0 };

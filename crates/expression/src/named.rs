@@ -11,16 +11,23 @@ pub(crate) enum Callee {
     Step,
     /// A choice between two by a comparison.
     If,
+    /// The rest of a division.
+    Mod,
 }
 
 /// Names that are no functions of the graph; a name of a system may be one of these.
-const FURTHER: [(&str, Callee); 4] =
-    [("ln", Callee::Function(Function::Log)), ("hypot", Callee::Hypot), ("step", Callee::Step), ("if", Callee::If)];
+const FURTHER: [(&str, Callee); 5] = [
+    ("ln", Callee::Function(Function::Log)),
+    ("hypot", Callee::Hypot),
+    ("step", Callee::Step),
+    ("if", Callee::If),
+    ("mod", Callee::Mod),
+];
 
 /// The names that are told where a name is no function.
-pub(crate) const KNOWN: [&str; 21] = [
+pub(crate) const KNOWN: [&str; 23] = [
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "ln", "sqrt", "abs",
-    "sign", "min", "max", "hypot", "step", "if",
+    "sign", "min", "max", "hypot", "step", "if", "floor", "mod",
 ];
 
 impl Callee {
@@ -35,6 +42,7 @@ impl Callee {
             Self::Hypot => "hypot",
             Self::Step => "step",
             Self::If => "if",
+            Self::Mod => "mod",
         }
     }
 
@@ -45,6 +53,7 @@ impl Callee {
             Self::Function(function) => (function.arguments(), function.arguments()),
             Self::Step => (1, 1),
             Self::If => (3, 3),
+            Self::Mod => (2, 2),
         }
     }
 }

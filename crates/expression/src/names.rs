@@ -89,7 +89,8 @@ pub(crate) fn in_name(c: char) -> bool {
 }
 
 fn reserved(name: &str) -> bool {
-    name == PI || name == "ln" || Function::named(name).is_some()
+    // A name that became a function later may be that of a system, which does not call it.
+    name == PI || name == "ln" || Function::named(name).is_some_and(|function| function != Function::Floor)
 }
 
 /// `x_dot` as `x'`.

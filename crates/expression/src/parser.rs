@@ -134,8 +134,7 @@ impl Parser<'_> {
     fn name(&mut self, column: usize, name: &str) -> Result<bool, Error> {
         let callee = Callee::named(name);
         let position = self.names.position(name);
-        let reserved = if let Some(Callee::Function(function)) = callee { Some(function) } else { None };
-        if reserved.is_none() && position.is_none() && name != PI && !self.tokens.opens() {
+        if !matches!(callee, Some(Callee::Function(_))) && position.is_none() && name != PI && !self.tokens.opens() {
             return Err(self.names.unknown(name, column));
         }
         match (callee, self.tokens.opens()) {
@@ -269,6 +268,7 @@ impl Parser<'_> {
                 let turned = comparison.is_some_and(|comparison| comparison.turned);
                 self.push(column, Action::Choose { turned })?;
             }
+            Callee::Mod => self.push(column, Action::Modulo)?,
         }
         Ok(())
     }

@@ -30,6 +30,8 @@ pub(crate) enum Action {
     Divide,
     Power,
     Call(Function),
+    /// The first less the multiples of the second that are in it.
+    Modulo,
     /// The second of three where the first is positive, else the third; the other way round if `turned`.
     Choose {
         turned: bool,
@@ -104,13 +106,15 @@ impl Syntax {
         names
     }
 
-    /// The first function that jumps, `sign`, `step` or `if`: its column.
+    /// The first function that jumps, as `sign` or `if`: its column.
     #[must_use]
     pub fn first_jump(&self) -> Option<usize> {
         let jumps = |step: &&SyntaxStep| {
             matches!(
                 step.action,
-                Action::Call(Function::Sign | Function::Where | Function::Unless) | Action::Choose { .. }
+                Action::Call(Function::Sign | Function::Floor | Function::Where | Function::Unless)
+                    | Action::Choose { .. }
+                    | Action::Modulo
             )
         };
         self.steps.iter().filter(jumps).map(|step| step.column).min()
@@ -133,6 +137,7 @@ fn applied<S: Scalar>(action: Action, a: S, b: S, constant: Option<f64>) -> S {
             Some(b) => power(a, b),
             None => (b * a.ln()).exp(),
         },
+        Action::Modulo => a - b * Function::Floor.of(a / b, b),
         Action::Call(function) => function.of(a, b),
     }
 }

@@ -25,7 +25,9 @@ fn value<S: Scalar>(graph: &Graph, e: Expression, inputs: &[S]) -> S {
 #[test]
 fn corners_are_found_and_no_others() {
     let third = |k: i32| f64::from(k) * PI / 3.0;
-    let cases: [(&str, Vec<f64>); 16] = [
+    let cases: [(&str, Vec<f64>); 18] = [
+        ("floor(t/2.5)", vec![2.5, 5.0, 7.5]),
+        ("mod(t - 1, 3)*step(t - 6)", vec![1.0, 4.0, 6.0, 7.0]),
         ("if(t < 2.5, sqrt(2.5 - t), log(t - 1))", vec![2.5]),
         ("if(sin(t) >= 0, 1, if(t > 4, 2, 3))", vec![PI, 4.0, 2.0 * PI, 3.0 * PI]),
         ("step(t - 2)*t + hypot(t, 1)", vec![2.0]),

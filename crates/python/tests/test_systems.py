@@ -270,9 +270,9 @@ def test_constraints_have_names_forces_and_equations() -> None:
 
 def test_pieces_are_choices() -> None:
     x = dynamicsymbols("x")
-    push = sp.Piecewise((1, t < sp.Rational(1, 2)), (2 * t, t <= 1), (0, True)) + sp.Heaviside(t - 2)
+    push = sp.Piecewise((1, t < sp.Rational(1, 2)), (2 * t, t <= 1), (0, True)) + sp.Heaviside(t - 2) + sp.Mod(t, 2)
     system = noslip.System([x], x.diff(t) ** 2 / 2, forces={x: push}, duration=3.0, step=0.7, method="gauss8")
-    np.testing.assert_allclose(system.run()["x'"][-1], 0.5 + 0.75 + 1.0, rtol=1e-14)
+    np.testing.assert_allclose(system.run()["x'"][-1], 0.5 + 0.75 + 1.0 + 2.0 + 0.5, rtol=1e-14)
     with pytest.raises(noslip.RequestError, match="for all other cases"):
         noslip.System([x], x.diff(t) ** 2 / 2, forces={x: sp.Piecewise((1, t < 1))})
     with pytest.raises(noslip.RequestError, match="conditions are comparisons"):

@@ -42,6 +42,17 @@ fn a_choice_by_time_is_cut_and_one_by_place_is_a_force() {
         let run = folder.json(&format!("run push.toml --method {method} --json"));
         assert_relative_eq!(run["final"]["x'"].as_f64().unwrap(), area, max_relative = within);
     }
+    folder.write("push.toml", scene("", "mod(t, 1.5)*floor(t)"));
+    // The integral of (t - 1.5 i) j over the pieces between multiples of 1.5 and of 1.
+    let piece = |from: f64, to: f64, i: f64, j: f64| j * ((to * to - from * from) / 2.0 - 1.5 * i * (to - from));
+    let pieces =
+        [(1.0, 1.5, 0.0, 1.0), (1.5, 2.0, 1.0, 1.0), (2.0, 3.0, 1.0, 2.0), (3.0, 4.0, 2.0, 3.0), (4.0, 4.5, 2.0, 4.0)];
+    let area: f64 =
+        pieces.iter().map(|(from, to, i, j)| piece(*from, *to, *i, *j)).sum::<f64>() + piece(4.5, 4.9, 3.0, 4.0);
+    for (method, within) in [("gauss8", 1e-13), ("dla", 1e-13), ("taylor", 1e-12), ("dop853", 1e-9)] {
+        let run = folder.json(&format!("run push.toml --method {method} --json"));
+        assert_relative_eq!(run["final"]["x'"].as_f64().unwrap(), area, max_relative = within);
+    }
     // A ball between two springs: through half of the gap, half a swing of one spring, through the gap, and into the other spring.
     let gap = scene("", "if(abs(x) <= 1, 0, -4*(x - if(x > 0, 1, -1)))");
     folder.write("gap.toml", gap.replace("duration = 4.9", "duration = 3.0") + "[start]\n\"x'\" = 3.0\n");

@@ -79,7 +79,7 @@ pub enum Problem {
     Expression(#[from] crate::Error),
     /// A function that jumps stands where derivatives are taken.
     #[error(
-        "`sign`, `step` and `if` jump, and are accepted only in forces, in outputs and in abbreviations for them (column {column}); \
+        "`sign`, `step`, `if`, `floor` and `mod` jump, and are accepted only in forces, in outputs and in abbreviations for them (column {column}); \
         `max(0, x)^2` begins at zero without a jump"
     )]
     Jump {

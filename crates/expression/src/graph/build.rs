@@ -104,6 +104,7 @@ impl Graph {
                     Action::Negate => self.negated(a),
                     Action::Power => self.raised(a, b),
                     Action::Call(function) => self.call(function, &[a, b]),
+                    Action::Modulo => self.modulo(a, b),
                     _ => a,
                 })
             }

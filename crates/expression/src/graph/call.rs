@@ -49,7 +49,7 @@ impl Graph {
             },
             Function::Min | Function::Max if first == last => first,
             Function::Min | Function::Max => self.called(function, [first.min(last), first.max(last)]),
-            Function::Acos | Function::Atan2 => self.called(function, [first, last]),
+            Function::Acos | Function::Atan2 | Function::Floor => self.called(function, [first, last]),
         }
     }
 
@@ -61,6 +61,26 @@ impl Graph {
         let then = self.call(Function::Where, &[condition, then]);
         let otherwise = self.call(Function::Unless, &[condition, otherwise]);
         self.sum(&[then, otherwise])
+    }
+
+    /// `a - b floor(a/b)`, which has the sign of `b`.
+    pub fn modulo(&mut self, a: Expression, b: Expression) -> Expression {
+        let ratio = self.quotient(a, b);
+        let whole = self.call(Function::Floor, &[ratio]);
+        let multiple = self.product(&[b, whole]);
+        self.difference(a, multiple)
+    }
+
+    /// `floor(a)` where its jumps have the side `side`, the sign of `sin(pi a)`: the formula has no jump near those of the function.
+    pub(crate) fn floor_beside(&mut self, a: Expression, side: Expression) -> Expression {
+        // Two jumps further it is the same again: 2 floor((a + side/2)/2) + (1 - side)/2.
+        let half = self.scaled(side, 0.5);
+        let (moved, one) = (self.sum(&[a, half]), self.constant(0.5));
+        let middle = self.scaled(moved, 0.5);
+        let whole = self.call(Function::Floor, &[middle]);
+        let twice = self.scaled(whole, 2.0);
+        let rest = self.difference(one, half);
+        self.sum(&[twice, rest])
     }
 
     fn called(&mut self, function: Function, arguments: [Expression; 2]) -> Expression {

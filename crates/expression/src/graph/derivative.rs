@@ -166,9 +166,13 @@ impl Graph {
                 let square = self.power(f, 2.0);
                 self.negated(square)
             }
-            Function::Sign | Function::Where | Function::Unless | Function::Atan2 | Function::Min | Function::Max => {
-                self.constant(0.0)
-            }
+            Function::Sign
+            | Function::Floor
+            | Function::Where
+            | Function::Unless
+            | Function::Atan2
+            | Function::Min
+            | Function::Max => self.constant(0.0),
         }
     }
 }

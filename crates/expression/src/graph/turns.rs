@@ -178,6 +178,7 @@ impl Graph {
                     | Function::Cos
                     | Function::Tan
                     | Function::Atan2
+                    | Function::Floor
                     | Function::Where
                     | Function::Unless,
                     ..,

@@ -198,6 +198,24 @@ impl Lowered {
                 self.push(to, Kind::Sum { a: first, b: second, beta: 1.0 });
             }
             Function::Abs | Function::Sign => self.choice(to, function, [a, a], a),
+            Function::Floor => {
+                // As `Graph::floor_beside`.
+                let turned = self.made(Kind::Scaled { a, alpha: std::f64::consts::PI, gamma: 0.0 });
+                let [sin, cos, side, zero] = [(); 4].map(|()| self.place());
+                self.circle(turned, [sin, cos]);
+                self.choice(side, Function::Sign, [sin, sin], sin);
+                self.constant(zero, 0.0);
+                let moved = self.made(Kind::Sum { a, b: side, beta: 0.5 });
+                let middle = self.made(Kind::Scaled { a: moved, alpha: 0.5, gamma: 0.0 });
+                let whole = self.made(Kind::Integral {
+                    a: middle,
+                    b: zero,
+                    beta: 0.0,
+                    start: Start::Call(Function::Floor, middle),
+                });
+                let rest = self.made(Kind::Scaled { a: side, alpha: -0.5, gamma: 0.5 });
+                self.push(to, Kind::Sum { a: rest, b: whole, beta: 2.0 });
+            }
             Function::Where | Function::Unless => {
                 let corner = self.corner(function, a);
                 self.push(to, Kind::Pick { a: b, corner });

@@ -62,6 +62,7 @@ impl Tape {
                     }
                     Function::Abs
                     | Function::Sign
+                    | Function::Floor
                     | Function::Where
                     | Function::Unless
                     | Function::Min

@@ -82,6 +82,8 @@ pub fn expression() -> impl Strategy<Value = String> {
             "hypot(x, y, 1, 0.5)",
             "min(x, A, 2)",
             "step(x)*(A)",
+            "floor(0.3*x + 7.7)*(A)",
+            "mod(0.1*y + 5.5, 3)",
             "if(x < 0, A, y)",
             "if(y >= x - 0.1, sin(A), mass*A)",
             "if(0 <= x', sqrt(x'), A)",

@@ -76,8 +76,8 @@ def refuse_twins(expressions: Iterable[Any]) -> None:
                 raise RequestError(f"{told} would have one name, {spelled(own[0])}: rename one of them")
 
 
-KNOWN = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sign"}
-RENAMED = {"Abs": "abs", "Max": "max", "Min": "min"}
+KNOWN = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sign", "floor"}
+RENAMED = {"Abs": "abs", "Max": "max", "Min": "min", "Mod": "mod"}
 
 
 def _check(expression: Any) -> None:
@@ -138,7 +138,7 @@ def _printer() -> Any:
             arguments = ", ".join(self.doprint(argument) for argument in expression.args)
             return f"{RENAMED.get(called, called)}({arguments})"
 
-        _print_Abs = _print_Max = _print_Min = _print_Function
+        _print_Abs = _print_Max = _print_Min = _print_Mod = _print_floor = _print_Function
 
         def _print_Piecewise(self, expression: Any) -> str:
             *branches, (last, _) = expression.args
