@@ -227,7 +227,7 @@ pub(crate) fn one_run(
     if newton.max > 0 {
         rest.push(("Newton", format!("{:.2} iterations a step, {} at most", newton.mean, newton.max)));
     }
-    rest.push(("time", format!("{seconds:.3e} s, {per_step:.1} ns a step")));
+    rest.push(("time", format!("{seconds:.3e} s, {per_step:.1} ns a step with what is measured at each node")));
     rest.extend(out.map(|path| ("written", path.display().to_string())));
     if record.derivation_seconds >= NOTICED {
         let seconds = record.derivation_seconds;
