@@ -63,7 +63,7 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
         terminal::print_json(&object)?;
     } else {
         let name = format!("{} ({})", scene.title(), scene.name());
-        let heading = format!("{name}: mean time of a step of dla with automatic derivatives\n");
+        let heading = table::wrapped(&format!("{name}: mean time of a step of dla with automatic derivatives"));
         let counted = operations.map_or_else(String::new, |[lagrangian, constraints, forces]| {
             format!("operations: {lagrangian} for the Lagrangian, {constraints} for the constraints, {forces} for the forces\n")
         });

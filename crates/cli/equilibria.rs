@@ -51,9 +51,9 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         }));
     }
     let heading =
-        format!("{} ({}): steady motions, and those of {name} with steps of {h} s\n", scene.title(), scene.name());
+        format!("{} ({}): steady motions, and those of {name} with steps of {h} s", scene.title(), scene.name());
     let told = motions.into_iter().map(SteadyMotion::told).collect::<String>();
-    terminal::print(&(heading + &told + &searched(places, all.reach, velocities)))
+    terminal::print(&(table::wrapped(&heading) + &told + &searched(places, all.reach, velocities)))
 }
 
 /// The phase portrait of a sleigh: steady motions, and orbits.
@@ -217,10 +217,11 @@ fn searched(places: usize, reach: f64, motions: usize) -> String {
         _ => format!("from {places} places up to {} from the start in each coordinate", table::number(reach)),
     };
     let velocities = if motions == 1 { "velocity" } else { "velocities" };
-    format!(
-        "\nsearched: rest {places}, steady motions from {motions} {velocities}; of a family one is shown, and there may \
-            be others further away\n"
-    )
+    let sentence = format!(
+        "searched: rest {places}, steady motions from {motions} {velocities}; of a family one is shown, and there may \
+            be others further away"
+    );
+    format!("\n{}", table::wrapped(&sentence))
 }
 
 /// The longest step of a method near a steady motion, in words.

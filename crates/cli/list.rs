@@ -47,13 +47,13 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
     let text = match arguments.what {
         Listed::Methods => {
             let line = |m: &harness::MethodInfo| (m.name, format!("order {}, {}", m.order, m.summary));
-            table::aligned(&METHODS.iter().map(line).collect::<Vec<_>>())
+            table::listed(&METHODS.iter().map(line).collect::<Vec<_>>())
         }
         Listed::Effects => effect_keys::text(),
         Listed::Cases => {
-            table::aligned(&stability::cases()?.iter().map(|case| (case.name, case.hard)).collect::<Vec<_>>())
+            table::listed(&stability::cases()?.iter().map(|case| (case.name, case.hard)).collect::<Vec<_>>())
         }
-        Listed::Scenes => table::aligned(&scenes()?),
+        Listed::Scenes => table::listed(&scenes()?),
     };
     terminal::print(&text)
 }

@@ -76,13 +76,10 @@ fn verdicts(curves: &[Curve]) -> String {
         let (error, best, next) = (number(level.error), level.methods.first(), level.methods.get(1));
         let _ = match (best, next, level.factor()) {
             (Some((best, seconds)), Some((next, _)), Some(factor)) => {
-                writeln!(
-                    text,
-                    "cheapest to {error}: {best} with {seconds:.1e} s; {next} takes {factor:.2} times as long"
-                )
+                writeln!(text, "cheapest to {error}: {best}, {seconds:.1e} s; {next} takes {factor:.2} times as long")
             }
             (Some((best, seconds)), ..) => {
-                writeln!(text, "cheapest to {error}: {best} with {seconds:.1e} s, and no other")
+                writeln!(text, "cheapest to {error}: {best}, {seconds:.1e} s, and no other")
             }
             (None, ..) => writeln!(text, "no method reaches an error of {error}"),
         };

@@ -243,12 +243,31 @@ pub(crate) fn counted(count: u64, thing: &str) -> String {
     format!("{count} {thing}{plural}")
 }
 
-/// Names and values in two columns.
+/// Names and values in two columns: one line each for another program, and as wide as a screen on one.
+pub(crate) fn listed<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
+    let most = if console::Term::stdout().is_term() { WIDTH } else { usize::MAX };
+    aligned_to(lines, most)
+}
+
+/// Names and values in two columns; what is too long for a line goes on below.
 pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
+    aligned_to(lines, WIDTH)
+}
+
+fn aligned_to<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)], most: usize) -> String {
     let width = lines.iter().map(|(name, _)| name.as_ref().chars().count()).max().unwrap_or(0);
     let mut text = String::new();
+    // A value has some room whatever the names are.
+    let room = most.saturating_sub(width + 2).max(WIDTH / 3);
     for (name, value) in lines {
-        let _ = writeln!(text, "{:<width$}  {}", name.as_ref(), value.as_ref());
+        let (name, value) = (name.as_ref(), value.as_ref());
+        if value.chars().count() <= room {
+            let _ = writeln!(text, "{name:<width$}  {value}");
+            continue;
+        }
+        for (k, line) in wrapped_to(value, room).into_iter().enumerate() {
+            let _ = writeln!(text, "{:<width$}  {line}", if k == 0 { name } else { "" });
+        }
     }
     text
 }

@@ -270,7 +270,8 @@ fn many_outputs_are_read_at_once() {
     for count in [500, 5000] {
         folder.write("s.toml", outputs(count));
         let begin = std::time::Instant::now();
-        assert!(folder.done("check s.toml").contains(&format!("o{} = {}", count - 1, count - 1)));
+        let words = folder.done("check s.toml").split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&format!("o{} = {}", count - 1, count - 1)));
         times.push(begin.elapsed().as_secs_f64());
     }
     // Ten times as many take ten times as long, where the square would be a hundred; a process takes some time to begin.
