@@ -16,7 +16,7 @@ pub(super) fn rows(scene: &TextScene, asked: &Asked<'_>, keys: &[String]) -> Res
     let built = scene.built_in(&family).map_err(|error| refused(&error))?;
     let system = built.system();
     let Some(member) = (if let Built::Text(text) = system { text.member() } else { None }) else {
-        return Err(refused(&"the system has more coordinates than this program supports"));
+        return Err(refused(&"the steps of trains and other large systems have no derivatives"));
     };
     let n = scene.model.coordinates().len();
     let start = varied.iter().map(|&varied| {

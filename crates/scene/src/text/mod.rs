@@ -70,8 +70,8 @@ pub enum BuildError {
     /// Of a train.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
-    /// A system of text is too large.
-    #[error("the system has more coordinates than this program supports")]
+    /// A system of text has no start, or more constraints than coordinates.
+    #[error("the system has a start with fewer coordinates, or more constraints than coordinates")]
     NoRoom,
 }
 
