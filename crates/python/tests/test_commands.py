@@ -56,3 +56,11 @@ def test_methods_are_told() -> None:
 @pytest.mark.parametrize("command", ["cost"])
 def test_other_commands(command: str) -> None:
     assert getattr(noslip.scene("bowl"), command)()
+
+
+def test_equations_are_formulas_of_the_motion() -> None:
+    found = noslip.scene("rolling-disk").equations()
+    assert found["unknowns"] == ["x", "y", "phi", "theta", "xi1", "xi2"]
+    assert found["rates"][0] == "0.5*xi1*cos(theta)"
+    with pytest.raises(noslip.RequestError):
+        noslip.scene("turnaround").equations()

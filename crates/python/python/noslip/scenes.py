@@ -284,6 +284,10 @@ class Scene:
         """What each effect costs a step: the object of `noslip cost --json`."""
         return self._command("cost", progress, settings)
 
+    def equations(self, **settings: Any) -> dict[str, Any]:
+        """The reduced equations of motion of a system of text, as formulas: the object of `noslip equations --json`."""
+        return self._command("equations", None, settings)
+
     def _command(
         self,
         command: str,
