@@ -201,3 +201,25 @@ fn errors_have_colours_where_they_are_wanted() {
     assert!(coloured.matches('\x1b').count() > 4, "{coloured:?}");
     assert_eq!(told(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]), plain);
 }
+
+/// A sweep takes other values of its scene: the rows are those of a scene that has them, and the command told makes them again.
+#[test]
+fn a_sweep_takes_settings_of_its_scene() {
+    let folder = Folder::new();
+    let sweep = |scene: &str| format!("scene = \"{scene}\"\nduration = 2.0\n[grid]\n\"start.speed\" = [-1.0, -2.0]\n");
+    folder.write("sweep.toml", sweep("scene.toml"));
+    folder.write("scene.toml", SCENE);
+    folder.write("heavy.toml", SCENE.replace("mass = 1.0", "mass = 2.5"));
+    folder.write("other.toml", sweep("heavy.toml"));
+    folder.done("ensemble sweep.toml --set sleigh.mass=2.5 --out set.csv");
+    folder.done("ensemble other.toml --out other.csv");
+    folder.done("ensemble sweep.toml --out plain.csv");
+    assert_eq!(folder.read("set.csv"), folder.read("other.csv"));
+    assert_ne!(folder.read("set.csv"), folder.read("plain.csv"));
+    assert!(folder.read("set.csv-metadata.json").contains("--set sleigh.mass=2.5"));
+    folder.refused("ensemble sweep.toml --set sleigh.weight=2.5", &["--set sleigh.weight=2.5"]);
+    folder.done("ensemble sweep.toml --set sleigh.mass=2.5 --part 1/2 --out parts");
+    folder.done("ensemble sweep.toml --set sleigh.mass=2.5 --part 2/2 --out parts");
+    folder.done("merge parts --out merged.csv");
+    assert_eq!(folder.read("merged.csv"), folder.read("set.csv"));
+}

@@ -64,6 +64,8 @@ pub(crate) struct EnsembleArguments {
     /// A sweep file, which names a scene and the keys that vary
     #[arg(value_name = "SWEEP", value_parser = scene_path())]
     pub(crate) sweep: String,
+    #[command(flatten)]
+    pub(crate) set: Settings,
     /// Write a row for each member to a file .csv, .jsonl, .npz or .parquet (a cargo feature), by the ending of the
     /// name; with --part, FILE is the folder of the parts
     #[arg(long, value_name = "FILE")]

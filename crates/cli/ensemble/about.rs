@@ -32,6 +32,9 @@ pub(super) struct About {
     pub(super) instructions: String,
     /// The file of the sweep, as it was named.
     pub(super) sweep: String,
+    /// The values in place of those of its scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    settings: Vec<String>,
     /// Its scene.
     pub(super) scene: String,
     pub(super) title: String,
@@ -50,7 +53,7 @@ pub(super) struct About {
 
 impl About {
     /// The description of a sweep from the file `file`.
-    pub(super) fn new(file: &str, sweep: &Sweep, summed: &Summed, identity: &str) -> Self {
+    pub(super) fn new((file, set): (&str, &Settings), sweep: &Sweep, summed: &Summed, identity: &str) -> Self {
         let (scene, run) = (&sweep.scene, sweep.scene.run());
         let mut notes = json!({
             "method": run.method, "step": run.actual_step(), "duration": run.duration, "sweep": sweep.file,
@@ -64,6 +67,7 @@ impl About {
             version: program::version(),
             instructions: program::instructions(),
             sweep: file.to_owned(),
+            settings: set.set.iter().map(ToString::to_string).collect(),
             scene: scene.name().to_owned(),
             title: scene.title().to_owned(),
             method: run.method.clone(),
@@ -88,7 +92,9 @@ impl About {
     /// members that failed.
     pub(super) fn metadata(&self, out: &Path, format: Format) -> String {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
-        let command = CommandLine::of("ensemble", &self.sweep, &Settings::default()).with("--out", out.display());
+        let command = CommandLine::of("ensemble", &self.sweep, &Settings::default());
+        let command = self.settings.iter().fold(command, |command, setting| command.with("--set", setting));
+        let command = command.with("--out", out.display());
         let provenance = Provenance::new(&self.title, Some(&command), self.notes.clone());
         let mut columns = described(&self.columns());
         columns.extend(if format.is_text() { vec![headed("error", "string")] } else { described(&[failed()]) });

@@ -33,10 +33,10 @@ use totals::EnsembleTotals;
 /// Computes the members of a sweep in order, writes a row for each, and says what they came to.
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let names = inspect::method_names();
-    let sweep = Sweep::load(&arguments.sweep, &names)?;
+    let sweep = Sweep::load_with(&arguments.sweep, &arguments.set.set, &names)?;
     let method = method_of(&sweep, sweep.scene.run())?;
     let (identity, summed) = (identity(&sweep), Summed::of(&sweep)?);
-    let about = About::new(&arguments.sweep, &sweep, &summed, &identity);
+    let about = About::new((&arguments.sweep, &arguments.set), &sweep, &summed, &identity);
     let members = Members { sweep: &sweep, method, names: &names, summed: &summed };
     if let Some(share) = arguments.part {
         return parts::make(arguments, &about, &members, share);

@@ -3,10 +3,11 @@ use crate::document::Document;
 use crate::draw::{Draw, Stream};
 use crate::fault::Fault;
 use crate::keys::{DURATION, STEP};
+use crate::settings::parse_with;
 use crate::table::TomlTable;
 use crate::text::varied;
 use crate::variation::UNKNOWN;
-use crate::{AnyScene, Overrides, Scene, SceneError, file, suggest, variation};
+use crate::{AnyScene, Overrides, Scene, SceneError, Setting, file, suggest, variation, with_settings};
 use sleigh::Sleigh;
 use thiserror::Error;
 use toml::de::DeTable;
@@ -85,7 +86,15 @@ impl Sweep {
     /// # Errors
     /// [`SweepError`] with the first fault of the sweep or of its scene.
     pub fn load(path: &str, methods: &[&str]) -> Result<Self, SweepError> {
-        Self::parse(&file::read(path)?, path, methods)
+        Self::load_with(path, &[], methods)
+    }
+
+    /// Reads the sweep in that file, with other values in its scene.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load), also where a setting has no place in the scene.
+    pub fn load_with(path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SweepError> {
+        Self::read(&file::read(path)?, path, settings, methods)
     }
 
     /// Reads a sweep from text; `origin` is the file's name.
@@ -93,6 +102,10 @@ impl Sweep {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SweepError> {
+        Self::read(text, origin, &[], methods)
+    }
+
+    fn read(text: &str, origin: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SweepError> {
         // A byte-order mark is no part of the first line.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document { origin, text };
@@ -106,7 +119,8 @@ impl Sweep {
         let name = &file::scene_of_sweep(origin, name);
         let bundled_text = bundled::named(name).map(|scene| scene.text.to_owned());
         let scene_text = bundled_text.map_or_else(|| file::read(name), Ok)?;
-        let scene = AnyScene::parse(&scene_text, name, methods)?;
+        let scene = parse_with(&scene_text, name, settings, |text, origin| AnyScene::parse(text, origin, methods))?;
+        let scene_text = with_settings(&scene_text, name, settings)?;
         let overrides = Overrides { method, step, duration, alpha: None };
         let scene = scene.with_overrides(&overrides, methods).map_err(|error| in_sweep(&root, error))?;
         let mut table: Table = scene_text.parse().unwrap_or_default();
