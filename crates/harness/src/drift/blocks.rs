@@ -5,7 +5,7 @@ const MOST: usize = 1024;
 
 /// A series at equal distances in time, in constant memory: sums and extremes of at most 1024 blocks of equal length.
 ///
-/// At 1024 blocks, each two neighbours become one and the blocks are twice as long: from 1024 values on there are always 512 to 1024
+/// At 1024 blocks, neighbouring blocks are merged in pairs and are twice as long: from 1024 values on there are always 512 to 1024
 /// blocks, for any length of the series. The order of the values within a block is lost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
