@@ -1,6 +1,6 @@
 //! `noslip compare`, and `noslip --all`.
 
-use crate::program::{FAILING, Folder, SCENE, SCENES, keys, methods, names};
+use crate::program::{FAILING, Folder, SCENE, SCENES, TEXTS, keys, methods, names};
 use approx::assert_relative_eq;
 use serde_json::Value;
 use std::fs;
@@ -443,26 +443,31 @@ fn every_method_on_every_scene() {
     folder.write("noslip-report/index.html", "mine");
     let (text, methods) = (folder.done("--all"), methods());
     let tables: Vec<&str> = text.split("\n\n").collect();
-    assert_eq!(tables.len(), 2 + SCENES.len(), "{text}");
-    for (scene, table) in SCENES.iter().zip(&tables) {
+    let scenes: Vec<&str> = SCENES.iter().chain(&TEXTS).copied().collect();
+    assert_eq!(tables.len(), 2 + scenes.len(), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    // All together first: a line for each method, which refuses or fails on some scenes at most.
+    let together: Vec<&str> = tables[0].lines().collect();
+    assert!(together.len() == 2 + methods.len() && together[0].contains("All 30 scenes"), "{text}");
+    for (line, method) in together[2..].iter().zip(&methods) {
+        assert!(line.starts_with(&format!(" {method} ")), "{line}");
+        let counts = line.split_whitespace().skip(1).take(2).map(|count| count.parse::<usize>().unwrap());
+        assert!(counts.sum::<usize>() < scenes.len(), "{line}");
+    }
+    // Each method has a row, or is named behind the table.
+    for (scene, table) in scenes.iter().zip(&tables[1..]) {
         assert!(table.lines().next().unwrap().contains(&format!("({scene})")), "{table}");
-        let first = |line: &str| line.split_whitespace().next().unwrap().to_owned();
-        let rows = table.lines().skip(2).take(methods.len());
-        assert_eq!(rows.map(first).collect::<Vec<_>>(), methods);
+        let words: Vec<&str> = table.split_whitespace().map(|word| word.trim_end_matches([',', ':'])).collect();
+        for method in &methods {
+            assert!(words.contains(&method.as_str()), "{method} in {table}");
+        }
     }
-    // All together: a line for each method, which has run, refused or failed on each scene.
-    let together: Vec<&str> = tables[SCENES.len()].lines().collect();
-    assert_eq!(together.len(), 2 + methods.len(), "{text}");
-    for line in &together[2..] {
-        let counts = line.split_whitespace().skip(1).take(3).map(|count| count.parse::<usize>().unwrap());
-        assert_eq!(counts.sum::<usize>(), SCENES.len(), "{line}");
-    }
-    assert!(tables[1 + SCENES.len()].starts_with("report: noslip-report-2"), "{text}");
+    assert!(tables[1 + scenes.len()].starts_with("report: noslip-report-2"), "{text}");
     let files = names(&folder.join("noslip-report-2"));
-    let pictures = 3 * SCENES.len();
+    let pictures = 3 * scenes.len();
     assert_eq!(files.iter().filter(|name| name.ends_with(".svg")).count(), pictures, "{files:?}");
     // Each picture twice, as SVG and as PNG; the numbers of each scene twice, as CSV and as JSON, with the metadata of the CSV.
-    assert_eq!(files.len(), 1 + 2 * pictures + 3 * SCENES.len(), "{files:?}");
+    assert_eq!(files.len(), 1 + 2 * pictures + 3 * scenes.len(), "{files:?}");
     assert!(files.contains(&"index.html".to_owned()), "{files:?}");
 
     assert_eq!(folder.names(), ["noslip-report", "noslip-report-2"]);
