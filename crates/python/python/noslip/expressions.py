@@ -142,7 +142,7 @@ def _printer() -> Any:
 
         def _print_Piecewise(self, expression: Any) -> str:
             *branches, (last, _) = expression.args
-            chosen = self.doprint(last)
+            chosen: str = self.doprint(last)
             for value, condition in reversed(branches):
                 left, right = (self.doprint(side) for side in condition.args)
                 chosen = f"if({left} {condition.rel_op} {right}, {self.doprint(value)}, {chosen})"
