@@ -60,7 +60,12 @@ fn errors_name_the_text_and_the_column() {
         (|w| w.parameters[1].0 = "x".to_owned(), Entry::Parameter(1), None, "defined already"),
         (|w| w.abbreviations[1].1 = "sin(thet)".to_owned(), Entry::Abbreviation(1), Some(5), "did you mean `theta`"),
         (|w| w.abbreviations[0].1 = "s".to_owned(), Entry::Abbreviation(0), Some(1), "no name `s` is known"),
-        (|w| w.lagrangian = "m/2*x'^2 + sign(x)".to_owned(), Entry::Lagrangian, Some(12), "jump, and are accepted only in forces"),
+        (
+            |w| w.lagrangian = "m/2*x'^2 + sign(x)".to_owned(),
+            Entry::Lagrangian,
+            Some(12),
+            "jump, and are accepted only in forces",
+        ),
         (|w| w.lagrangian += " + way", Entry::Lagrangian, Some(42), "no name `way` is known"),
         (
             |w| w.lagrangian = "x'^2 + y'^2".to_owned(),
