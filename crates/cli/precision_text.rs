@@ -107,7 +107,7 @@ fn clock(measured: &Measurement) -> String {
     format!("{time}, {place}, {} rounds", clock.rounds)
 }
 
-/// What a terminal shows: what is cheapest, the methods, and, if it may be `wide`, every point.
+/// The text for a terminal: the cheapest method at each error, a table of the methods, and, if the text may be `wide`, every point.
 pub(crate) fn text(scene: &AnyScene, measured: &Measurement, wide: bool) -> String {
     let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(measured.duration));
     text += &indented(&format!("reference: {}", reference(measured)));

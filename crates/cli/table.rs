@@ -130,7 +130,7 @@ pub(crate) fn comparison(scene: &AnyScene, rows: &[ComparisonRow], interrupted: 
     text
 }
 
-/// Methods with what is to be said of them, once for those of which the same is said.
+/// A sentence for each reason, with the methods that have the reason.
 pub(crate) fn by_reason(methods: &[(String, String)]) -> String {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for (name, reason) in methods {
@@ -249,7 +249,7 @@ pub(crate) fn listed<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
     aligned_to(lines, most)
 }
 
-/// Names and values in two columns; what is too long for a line goes on below.
+/// Names and values in two columns; a long value continues on the next line.
 pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
     aligned_to(lines, WIDTH)
 }

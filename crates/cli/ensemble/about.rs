@@ -32,7 +32,7 @@ pub(super) struct About {
     pub(super) instructions: String,
     /// The file of the sweep, as it was named.
     pub(super) sweep: String,
-    /// The values in place of those of its scene.
+    /// Settings, `KEY=VALUE`, that replace values of its scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     settings: Vec<String>,
     /// Its scene.

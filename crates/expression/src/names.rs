@@ -101,6 +101,11 @@ fn one_spelling(name: &str) -> String {
     }
 }
 
+/// The name whose rate a name is, in either spelling.
+pub(crate) fn of_rate(name: &str) -> Option<&str> {
+    name.strip_suffix('\'').or_else(|| name.strip_suffix("_dot"))
+}
+
 /// A name of a hostile text is not repeated whole.
 pub(crate) fn shortened(name: &str) -> String {
     const SHOWN: usize = 40;

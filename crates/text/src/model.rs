@@ -48,6 +48,8 @@ pub struct TextModel {
     pub(crate) outputs: Vec<String>,
     pub(crate) output_units: Vec<String>,
     pub(crate) told: Tapes,
+    /// Which of the outputs contain multipliers.
+    pub(crate) with_multipliers: Box<[bool]>,
     /// How many free parameters there are before the multipliers in the variables of the outputs; `None` if these have no multipliers.
     pub(crate) before_multipliers: Option<usize>,
     pub(crate) timed: bool,
@@ -112,7 +114,11 @@ impl TextModel {
         let basis = formulas.basis.clone().or(derived);
         let given = formulas.clone();
         let before_multipliers = formulas.multipliers.map(|first| first as usize - 1 - 2 * words.coordinates.len());
-        let Formulas { mut graph, lagrangian, rows, level, positions, force, outputs, .. } = formulas;
+        let Formulas { mut graph, lagrangian, rows, level, positions, force, outputs, multipliers, .. } = formulas;
+        let contains = |&e: &Expression| {
+            multipliers.is_some_and(|first| graph.variables(e).last().is_some_and(|variable| *variable >= first))
+        };
+        let with_multipliers = outputs.iter().map(contains).collect();
         let momentum = graph.gradient(lagrangian, &all);
         let mass: Vec<Expression> = [graph.hessian(lagrangian, &all, &all).concat(), momentum.clone()].concat();
         let fail = |error: expression::Error| TextError { entry: Entry::Lagrangian, problem: error.into() };
@@ -148,6 +154,7 @@ impl TextModel {
                 .map(|k| words.output_units.get(k).cloned().unwrap_or_default())
                 .collect(),
             told: tapes(&outputs, Entry::System)?,
+            with_multipliers,
             before_multipliers,
             timed,
             formulas: Arc::new(given),
@@ -240,15 +247,15 @@ impl TextModel {
     #[must_use]
     pub fn told(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut told = vec![0.0; self.outputs.len()];
-        self.tell(t, q, v, |k, x| told[k] = x);
+        self.tell(self.before_multipliers.is_some(), t, q, v, |k, x| told[k] = x);
         told
     }
 
     /// One of the outputs at a state; none of a number beyond them.
     #[must_use]
     pub fn output(&self, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
-        let mut told = (k < self.outputs.len()).then_some(0.0)?;
-        self.tell(t, q, v, |i, x| {
+        let (with_multipliers, mut told) = (*self.with_multipliers.get(k)?, 0.0);
+        self.tell(with_multipliers, t, q, v, |i, x| {
             if i == k {
                 told = x;
             }
@@ -256,8 +263,9 @@ impl TextModel {
         Some(told)
     }
 
-    fn tell(&self, t: f64, q: &[f64], v: &[f64], see: impl FnMut(usize, f64)) {
-        let p = if self.before_multipliers.is_some() { self.multipliers(t, q, v) } else { Vec::new() };
+    /// Tells all outputs; an output with multipliers is right only if these are to be solved for.
+    fn tell(&self, with_multipliers: bool, t: f64, q: &[f64], v: &[f64], see: impl FnMut(usize, f64)) {
+        let p = if with_multipliers { self.multipliers(t, q, v) } else { Vec::new() };
         self.told.evaluate(self.coordinates.len(), TapePoint { p: &p, ..TapePoint::new(t, q, v) }, see);
     }
 

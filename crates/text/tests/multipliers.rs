@@ -86,6 +86,12 @@ fn names_of_rows() {
     named.outputs[0].1 = "abs(lambda_edge)".to_owned();
     let model = TextModel::new(&named).unwrap();
     assert_eq!(model.multiplier_names(), ["lambda_edge"]);
+    // One output alone is as all of them, with a multiplier and without.
+    named.outputs.push(("place".to_owned(), "x + th".to_owned()));
+    let (model, both) = (TextModel::new(&named).unwrap(), [[0.4, -0.2, 0.6], [1.0, 0.0, 0.5]]);
+    let all = model.told(0.0, &both[0], &both[1]);
+    assert_eq!([0, 1].map(|k| model.output(k, 0.0, &both[0], &both[1])), [Some(all[0]), Some(all[1])]);
+    assert!(all[0] > 0.1 && model.output(2, 0.0, &both[0], &both[1]).is_none());
     // A name that the system has keeps its meaning.
     let mut own = edge();
     own.parameters.push(("lambda1".to_owned(), 7.0));

@@ -31,8 +31,8 @@ pub(crate) fn brakes_only<const N: usize, const M: usize>(
     overshoot(damping, inertia([v, v1], [&system.momentum(t, &q, v), &system.momentum(t, &q, v1)]))
 }
 
-/// The damping of the change of velocity from `v`, in the middle of a step of length `h` (s), to `v1` at its end (J): `forces` are those of
-/// the two velocities in the middle of the step.
+/// The damping of the change of velocity from `v`, in the middle of a step of length `h` (s), to `v1` at its end (J). `forces` has the forces at
+/// the two velocities, in the middle of the step.
 #[inline(always)]
 #[must_use]
 pub fn damping(h: f64, [v, v1]: [&[f64]; 2], [mean, end]: [&[f64]; 2]) -> f64 {

@@ -1,6 +1,7 @@
 use super::tables::{May, Tables};
 use super::{Entry, Formulas, Parameters, Problem, TextError, Words};
 use crate::Expression;
+use crate::names::{in_name, of_rate};
 use std::collections::HashSet;
 
 /// The names of columns that every trajectory has.
@@ -85,22 +86,25 @@ fn names(words: &Words, parameters: Parameters) -> Result<Tables, TextError> {
         };
         tables.add(name, meaning, May::Place, entry)?;
     }
+    let asked: HashSet<&str> = words.formulas().flat_map(words_of).filter_map(of_rate).collect();
+    let given: HashSet<&str> = words.abbreviations.iter().filter_map(|(name, _)| of_rate(name)).collect();
     for (k, (name, text)) in words.abbreviations.iter().enumerate() {
         let entry = Entry::Abbreviation(k);
         let (formula, from) = tables.abbreviation(text, entry)?;
         tables.add(name, formula, from, entry)?;
-        let [rate, spelled] = [format!("{name}'"), format!("{name}_dot")];
-        let is = |other: &str| other == rate || other == spelled;
         if from != May::Place {
             tables.without_rate.insert(name.clone(), from);
-        } else if !words.abbreviations.iter().any(|(other, _)| is(other))
-            && words.formulas().any(|text| text.contains(&rate) || text.contains(&spelled))
-        {
-            let meaning = tables.rate_along(formula);
-            tables.add(&rate, meaning, May::Move, entry)?;
+        } else if asked.contains(name.as_str()) && !given.contains(name.as_str()) {
+            let rate = tables.rate_along(formula);
+            tables.add(&format!("{name}'"), rate, May::Move, entry)?;
         }
     }
     Ok(tables)
+}
+
+/// The names, functions and numbers of a text, with the primes of rates.
+fn words_of(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !in_name(c) && c != '\'').filter(|word| !word.is_empty())
 }
 
 /// The Lagrangian, and the coordinates whose rates are not in it.

@@ -128,7 +128,7 @@ pub struct Formulas {
     pub basis: Option<Vec<Expression>>,
     /// The further outputs.
     pub outputs: Vec<Expression>,
-    /// The variable of the first multiplier, if outputs contain multipliers: those of the other rows follow.
+    /// The variable of the first multiplier, if outputs contain multipliers; the multipliers of the other rows follow.
     pub multipliers: Option<u32>,
 }
 

@@ -1,4 +1,5 @@
 use super::{Entry, Problem, TextError};
+use crate::names::of_rate;
 use crate::{Error, Expression, Graph, Names, Syntax, parse, parse_equation};
 use std::collections::HashMap;
 
@@ -129,7 +130,7 @@ impl Tables {
     /// The problem of a text with this error.
     fn named(&self, error: Error) -> Problem {
         if let Error::UnknownName { column, name, .. } = &error
-            && let Some(of) = name.strip_suffix('\'').or_else(|| name.strip_suffix("_dot"))
+            && let Some(of) = of_rate(name)
             && let Some(from) = self.without_rate.get(of)
         {
             let (column, name) = (*column, of.to_owned());
